@@ -1,0 +1,1 @@
+//! Scenes, meshes, recordings, plots and pictures for [`tumble`].
