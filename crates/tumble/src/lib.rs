@@ -1,5 +1,63 @@
 //! Rigid bodies made of particles.
+//!
+//! A body is a set of particles that keep their distances: the vertices of a mesh, or points
+//! sampled from it. Gravity and drag act on every particle, walls push back those behind them, and
+//! what the particles feel adds up to the force and torque that move the body.
+//!
+//! # Limits
+//! Bodies do not touch each other yet; walls are planes.
+//!
+//! # A tour
+//! - [`Shape`]: particles and mass distribution, made from points or a [`Mesh`].
+//! - [`World`]: bodies of these shapes among walls. Build it, step it, read it.
+//! - [`step::step`]: the step, as a list of [`stage`]s. Start here to read the physics.
+//! - [`Model`], [`State`], [`Scratch`]: what is constant, what evolves, what may be forgotten.
+//! - [`Energy`]: where every joule is.
+//!
+//! ```
+//! use tumble::{Body, DVec3, Shape, WallBox, World};
+//!
+//! let corners = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO].map(|p| 0.3 * p);
+//! let mut world = World::builder()
+//!     .walls_of_box(&WallBox::arena())
+//!     .body(
+//!         Body::new(Shape::of_particles(&corners)?)
+//!             .velocity(DVec3::new(4.0, 2.0, 3.0))
+//!             .angular_velocity(DVec3::new(0.0, 100.0, 0.0)),
+//!     )
+//!     .build()?;
+//! while world.time() < 0.1 {
+//!     world.step()?;
+//! }
+//! assert!(world.body(0).position().x > 0.3);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![warn(missing_debug_implementations)]
 
+mod builder;
+mod energy;
+mod error;
+mod hash;
+mod material;
+mod model;
+mod scratch;
 mod shape;
+pub mod stage;
+mod state;
+pub mod step;
+mod wall;
+mod world;
+
+pub use builder::{Body, WorldBuilder};
+pub use energy::Energy;
+pub use error::{BuildError, StepError};
 pub use glam::{DMat3, DQuat, DVec3};
-pub use shape::{Mesh, MeshError};
+pub use material::Material;
+pub use model::{BodyModel, Integrator, Model};
+pub use scratch::{BodyForces, Scratch, Wrench};
+pub use shape::{
+    MassProperties, Mesh, MeshError, ParticleMoments, Particles, PrincipalAxes, Shape, ShapeError,
+};
+pub use state::{BodyState, State, Tally};
+pub use wall::{WallBox, WallPlane};
+pub use world::{BodyView, World};

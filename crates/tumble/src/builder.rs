@@ -1,0 +1,315 @@
+//! From a description to a world: every value is checked here, once.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::{
+    BodyModel, BodyState, BuildError, Integrator, Material, Model, Shape, State, WallBox,
+    WallPlane, World,
+};
+
+/// A body as a user describes it.
+#[derive(Clone, Debug)]
+pub struct Body {
+    name: Option<String>,
+    shape: Arc<Shape>,
+    mass: Mass,
+    position: Option<DVec3>,
+    orientation: DQuat,
+    velocity: DVec3,
+    angular_velocity: DVec3,
+    material: Option<Material>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Mass {
+    Total(f64),
+    Particle(f64),
+}
+
+impl Body {
+    /// A body of this shape, at rest where its particles were given, with 1 kg in each particle.
+    pub fn new(shape: impl Into<Arc<Shape>>) -> Self {
+        Self {
+            name: None,
+            shape: shape.into(),
+            mass: Mass::Particle(1.0),
+            position: None,
+            orientation: DQuat::IDENTITY,
+            velocity: DVec3::ZERO,
+            angular_velocity: DVec3::ZERO,
+            material: None,
+        }
+    }
+
+    /// Its name; without one it is called `body` and its number.
+    pub fn name(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
+    /// Mass m of each particle (kg): M = N m.
+    pub fn particle_mass(mut self, mass: f64) -> Self {
+        self.mass = Mass::Particle(mass);
+        self
+    }
+
+    /// Total mass M (kg).
+    pub fn mass(mut self, mass: f64) -> Self {
+        self.mass = Mass::Total(mass);
+        self
+    }
+
+    /// Where its centre of mass starts (m).
+    pub fn position(mut self, position: DVec3) -> Self {
+        self.position = Some(position);
+        self
+    }
+
+    /// How it is turned at the start, about its centre of mass. Need not be of unit length.
+    pub fn orientation(mut self, orientation: DQuat) -> Self {
+        self.orientation = orientation;
+        self
+    }
+
+    /// Velocity v of its centre of mass at the start (m/s).
+    pub fn velocity(mut self, velocity: DVec3) -> Self {
+        self.velocity = velocity;
+        self
+    }
+
+    /// Angular velocity ω at the start, world axes (rad/s).
+    pub fn angular_velocity(mut self, angular_velocity: DVec3) -> Self {
+        self.angular_velocity = angular_velocity;
+        self
+    }
+
+    /// The material of its contacts, where it is not the world's.
+    pub fn material(mut self, material: Material) -> Self {
+        self.material = Some(material);
+        self
+    }
+}
+
+/// A world as a user describes it; [`WorldBuilder::build`] checks it.
+#[derive(Clone, Debug)]
+pub struct WorldBuilder {
+    gravity: DVec3,
+    velocity_damping_stiffness: f64,
+    dt: f64,
+    integrator: Integrator,
+    material: Material,
+    walls: Vec<(WallPlane, Option<Material>)>,
+    bodies: Vec<Body>,
+}
+
+impl Default for WorldBuilder {
+    /// The basic system's gravity and step, in free space.
+    fn default() -> Self {
+        Self {
+            gravity: DVec3::new(0.0, -9.8, 0.0),
+            velocity_damping_stiffness: 0.0,
+            dt: 1e-3,
+            integrator: Integrator::default(),
+            material: Material::default(),
+            walls: Vec::new(),
+            bodies: Vec::new(),
+        }
+    }
+}
+
+impl WorldBuilder {
+    /// Gravity g (m/s²); (0, −9.8, 0) unless said.
+    pub fn gravity(mut self, gravity: DVec3) -> Self {
+        self.gravity = gravity;
+        self
+    }
+
+    /// Drag c of the medium on every particle, F = −c v (N·s/m); 0 unless said.
+    pub fn velocity_damping_stiffness(mut self, c: f64) -> Self {
+        self.velocity_damping_stiffness = c;
+        self
+    }
+
+    /// Time step h (s); 1e-3 unless said.
+    pub fn dt(mut self, dt: f64) -> Self {
+        self.dt = dt;
+        self
+    }
+
+    /// How a step advances time.
+    pub fn integrator(mut self, integrator: Integrator) -> Self {
+        self.integrator = integrator;
+        self
+    }
+
+    /// The material of contacts for which neither wall nor body has its own.
+    pub fn material(mut self, material: Material) -> Self {
+        self.material = material;
+        self
+    }
+
+    /// Adds a wall.
+    pub fn wall(mut self, wall: WallPlane) -> Self {
+        self.walls.push((wall, None));
+        self
+    }
+
+    /// Adds a wall of its own material.
+    pub fn wall_of(mut self, wall: WallPlane, material: Material) -> Self {
+        self.walls.push((wall, Some(material)));
+        self
+    }
+
+    /// Adds the walls of a box.
+    pub fn walls_of_box(self, walls: &WallBox) -> Self {
+        walls.planes().into_iter().fold(self, Self::wall)
+    }
+
+    /// Adds a body.
+    pub fn body(mut self, body: Body) -> Self {
+        self.bodies.push(body);
+        self
+    }
+
+    /// Checks everything and starts the world at t = 0.
+    ///
+    /// # Errors
+    /// [`BuildError`] names the first quantity that cannot work and says what is allowed.
+    pub fn build(self) -> Result<World, BuildError> {
+        self.check_world()?;
+        let mut model = Model {
+            gravity: self.gravity,
+            velocity_damping_stiffness: self.velocity_damping_stiffness,
+            dt: self.dt,
+            integrator: self.integrator,
+            walls: self.walls.iter().map(|(wall, _)| *wall).collect(),
+            bodies: Vec::with_capacity(self.bodies.len()),
+        };
+        let mut state = State::default();
+        for (index, body) in self.bodies.iter().enumerate() {
+            let name = body.name.clone().unwrap_or_else(|| format!("body {index}"));
+            let body_model = self.body_model(name, body)?;
+            let body_state = body_state(&body_model, body)?;
+            check_inside(&model, &body_model, &body_state)?;
+            model.bodies.push(body_model);
+            state.bodies.push(body_state);
+        }
+        check_names(&model)?;
+        Ok(World::of(model, state))
+    }
+
+    fn check_world(&self) -> Result<(), BuildError> {
+        let check = |quantity, ok: bool, value: &dyn std::fmt::Display, allowed| {
+            if ok {
+                return Ok(());
+            }
+            Err(BuildError::World { quantity, value: value.to_string(), allowed })
+        };
+        let c = self.velocity_damping_stiffness;
+        check("dt", self.dt > 0.0 && self.dt.is_finite(), &self.dt, "a number of seconds above 0")?;
+        check("gravity", self.gravity.is_finite(), &self.gravity, "three finite numbers (m/s²)")?;
+        let allowed = "a number of N·s/m, 0 or more";
+        check("velocity_damping_stiffness", c >= 0.0 && c.is_finite(), &c, allowed)?;
+        let materials = self
+            .walls
+            .iter()
+            .filter_map(|(_, material)| *material)
+            .chain(self.bodies.iter().filter_map(|body| body.material))
+            .chain([self.material]);
+        for Material { collision_stiffness: k } in materials {
+            let ok = k >= 0.0 && k.is_finite();
+            check("collision_stiffness", ok, &k, "a number of N/m, 0 or more")?;
+        }
+        Ok(())
+    }
+
+    fn body_model(&self, name: String, body: &Body) -> Result<BodyModel, BuildError> {
+        let (quantity, value, mass) = match body.mass {
+            Mass::Total(mass) => ("mass", mass, mass),
+            Mass::Particle(mass) => {
+                ("particle_mass", mass, mass * body.shape.particles().len() as f64)
+            }
+        };
+        let inertia = body.shape.gyration() * mass;
+        let inverse_inertia = body.shape.principal().inverse() * (1.0 / mass);
+        let fits = inertia.is_finite() && inverse_inertia.is_finite();
+        if !(mass > 0.0 && mass.is_finite() && value.is_finite() && fits) {
+            let allowed = "a number of kg above 0, such that the inertia is finite";
+            return Err(BuildError::Body {
+                body: name,
+                quantity,
+                value: value.to_string(),
+                allowed,
+            });
+        }
+        let contact = |&(_, wall): &(WallPlane, Option<Material>)| {
+            wall.or(body.material).unwrap_or(self.material)
+        };
+        Ok(BodyModel {
+            name,
+            shape: Arc::clone(&body.shape),
+            mass,
+            inertia,
+            inverse_inertia,
+            contacts: self.walls.iter().map(contact).collect(),
+        })
+    }
+}
+
+/// Where a body starts; L = R I₀ Rᵀ ω.
+fn body_state(model: &BodyModel, body: &Body) -> Result<BodyState, BuildError> {
+    let refuse = |quantity, value: &dyn std::fmt::Display, allowed| {
+        Err(BuildError::Body {
+            body: model.name.clone(),
+            quantity,
+            value: value.to_string(),
+            allowed,
+        })
+    };
+    let position = body.position.unwrap_or(body.shape.centre());
+    let three = "three finite numbers";
+    if !position.is_finite() {
+        return refuse("position", &position, three);
+    }
+    if !body.velocity.is_finite() {
+        return refuse("initial_velocity", &body.velocity, three);
+    }
+    let q = body.orientation;
+    let largest = q.to_array().iter().fold(0.0f64, |m, c| m.max(c.abs()));
+    if !(q.is_finite() && largest > 0.0) {
+        return refuse("orientation", &q, "four finite numbers w, x, y, z, not all 0");
+    }
+    let orientation = if q.is_normalized() { q } else { (q / largest).normalize() };
+    let rotation = DMat3::from_quat(orientation);
+    let angular_momentum =
+        rotation * (model.inertia * (rotation.transpose() * body.angular_velocity));
+    if !angular_momentum.is_finite() {
+        return refuse("initial_angular_velocity", &body.angular_velocity, three);
+    }
+    Ok(BodyState { position, velocity: body.velocity, orientation, angular_momentum })
+}
+
+/// A body that starts with its centre of mass behind a wall, deeper than ten times the depth at
+/// which the springs of its particles carry its weight, was put there by mistake.
+fn check_inside(model: &Model, body: &BodyModel, state: &BodyState) -> Result<(), BuildError> {
+    for (wall, material) in model.walls.iter().zip(&body.contacts) {
+        let depth = wall.depth(state.position);
+        let sag = body.particle_mass() * model.gravity.length() / material.collision_stiffness;
+        if depth > 10.0 * sag {
+            let normal = wall.normal.to_array();
+            return Err(BuildError::Outside { body: body.name.clone(), normal, depth });
+        }
+    }
+    Ok(())
+}
+
+fn check_names(model: &Model) -> Result<(), BuildError> {
+    let mut names: Vec<_> = model.bodies.iter().map(|body| &body.name).collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(BuildError::SameName { body: pair[0].clone() }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,91 @@
+//! What can go wrong, in words that say where and what to do.
+
+/// Why a world cannot be built.
+#[derive(Clone, Debug, PartialEq)]
+pub enum BuildError {
+    /// A quantity of the world has an impossible value.
+    World {
+        /// Its name, as in scene files.
+        quantity: &'static str,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A quantity of a body has an impossible value.
+    Body {
+        /// Name of the body.
+        body: String,
+        /// The quantity's name, as in scene files.
+        quantity: &'static str,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A body starts on the solid side of a wall.
+    Outside {
+        /// Name of the body.
+        body: String,
+        /// The wall's normal.
+        normal: [f64; 3],
+        /// How deep the centre of mass lies behind it (m).
+        depth: f64,
+    },
+    /// Two bodies have the same name.
+    SameName {
+        /// The name.
+        body: String,
+    },
+}
+
+impl std::fmt::Display for BuildError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::World { quantity, value, allowed } => {
+                write!(f, "`{quantity}` is {value}, but must be {allowed}")
+            }
+            Self::Body { body, quantity, value, allowed } => {
+                write!(f, "body \"{body}\": `{quantity}` is {value}, but must be {allowed}")
+            }
+            Self::Outside { body, normal: [x, y, z], depth } => write!(
+                f,
+                "body \"{body}\" starts outside: its centre of mass lies {depth:.3e} m behind the wall \
+                 with normal ({x}, {y}, {z}); move its `position` to the free side"
+            ),
+            Self::SameName { body } => {
+                write!(f, "two bodies are called \"{body}\"; give each its own `name`")
+            }
+        }
+    }
+}
+
+impl std::error::Error for BuildError {}
+
+/// A step whose result cannot be trusted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StepError {
+    /// Number of the step, counted from 1.
+    pub step: u64,
+    /// Time at the end of the step (s).
+    pub time: f64,
+    /// Name of the body.
+    pub body: String,
+    /// What is wrong: a field of [`BodyState`](crate::BodyState).
+    pub quantity: &'static str,
+    /// Its value.
+    pub value: f64,
+}
+
+impl std::fmt::Display for StepError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { step, time, body, quantity, value } = self;
+        write!(
+            f,
+            "the simulation diverged at step {step} (t = {time} s): {quantity} of body \"{body}\" \
+             is {value}; try a smaller `dt` or a smaller `collision_stiffness`"
+        )
+    }
+}
+
+impl std::error::Error for StepError {}

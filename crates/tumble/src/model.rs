@@ -1,0 +1,83 @@
+//! What stays the same during a run.
+
+use std::sync::Arc;
+
+use glam::{DMat3, DVec3};
+
+use crate::shape::Shape;
+use crate::wall::WallPlane;
+use crate::{BodyState, Material};
+
+/// How a step advances time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// The basic system, lines 2 to 9 in their order, explicit in rotation.
+    #[default]
+    Euler,
+}
+
+impl Integrator {
+    /// Its name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Euler => "euler",
+        }
+    }
+}
+
+/// Everything that is constant during a run. Built and checked by [`WorldBuilder`](crate::WorldBuilder).
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Gravity g (m/s²).
+    pub gravity: DVec3,
+    /// Drag c of the medium on every particle, F = −c v (N·s/m).
+    pub velocity_damping_stiffness: f64,
+    /// Time step h (s).
+    pub dt: f64,
+    /// How a step advances time.
+    pub integrator: Integrator,
+    /// The walls; none is free space.
+    pub walls: Vec<WallPlane>,
+    /// One entry a body.
+    pub bodies: Vec<BodyModel>,
+}
+
+/// What is constant about one body.
+#[derive(Clone, Debug)]
+pub struct BodyModel {
+    /// Its name.
+    pub name: String,
+    /// Its particles and mass distribution.
+    pub shape: Arc<Shape>,
+    /// Mass M (kg).
+    pub mass: f64,
+    /// Inertia tensor I₀ about the centre of mass, body axes (kg·m²).
+    pub inertia: DMat3,
+    /// I₀⁻¹, with zero along axes that carry no inertia (1/(kg·m²)).
+    pub inverse_inertia: DMat3,
+    /// The contact law against each wall, in the order of [`Model::walls`].
+    pub contacts: Vec<Material>,
+}
+
+impl BodyModel {
+    /// Line 7: ω = R I₀⁻¹ Rᵀ L, with `rotation` = R (rad/s, world axes).
+    pub fn angular_velocity(&self, rotation: DMat3, angular_momentum: DVec3) -> DVec3 {
+        rotation * (self.inverse_inertia * (rotation.transpose() * angular_momentum))
+    }
+
+    /// Line 7: the place xᵢ = x + R rᵢ (m) and velocity vᵢ = v + ω × R rᵢ (m/s) of one particle.
+    ///
+    /// # Panics
+    /// When the body has no particle of that index.
+    pub fn particle(&self, state: &BodyState, index: usize) -> (DVec3, DVec3) {
+        let rotation = DMat3::from_quat(state.orientation);
+        let arm = rotation * self.shape.particles().get(index);
+        let omega = self.angular_velocity(rotation, state.angular_momentum);
+        (state.position + arm, state.velocity + omega.cross(arm))
+    }
+
+    /// The mass of one particle, m = M/N (kg).
+    pub fn particle_mass(&self) -> f64 {
+        self.mass / self.shape.moments().count
+    }
+}

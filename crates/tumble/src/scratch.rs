@@ -1,0 +1,60 @@
+//! What a step computes and forgets.
+
+use glam::DVec3;
+
+/// Room for what is derived within a step. Dropping it between steps changes no result.
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    /// Forces and torques of the latest evaluation, one entry a body.
+    pub forces: Vec<BodyForces>,
+}
+
+impl Scratch {
+    /// Room for `body_count` bodies; allocates only when it was smaller before.
+    pub(crate) fn clear(&mut self, body_count: usize) {
+        self.forces.clear();
+        self.forces.resize(body_count, BodyForces::default());
+    }
+}
+
+/// A force and a torque about the centre of mass, world axes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wrench {
+    /// Force F (N).
+    pub force: DVec3,
+    /// Torque τ about the centre of mass (N·m).
+    pub torque: DVec3,
+}
+
+impl std::ops::Add for Wrench {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { force: self.force + other.force, torque: self.torque + other.torque }
+    }
+}
+
+impl std::ops::AddAssign for Wrench {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+/// What acts on one body, by cause.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BodyForces {
+    /// Weight.
+    pub gravity: Wrench,
+    /// Drag of the medium.
+    pub drag: Wrench,
+    /// Contact with the walls.
+    pub contact: Wrench,
+    /// Depth of the deepest particle in contact (m), 0 in flight.
+    pub max_depth: f64,
+}
+
+impl BodyForces {
+    /// Lines 3 and 4: total force F = Σ fᵢ and total torque τ = Σ (xᵢ − x) × fᵢ.
+    pub fn total(&self) -> Wrench {
+        self.gravity + self.drag + self.contact
+    }
+}

@@ -1,0 +1,37 @@
+//! Line 8: drag on every particle.
+
+use glam::DMat3;
+
+use crate::{BodyModel, BodyState, Model, Scratch, State, Wrench};
+
+/// Adds up fᵢ = −c vᵢ over the particles of each body, in closed form.
+pub fn drag(model: &Model, state: &State, scratch: &mut Scratch) {
+    if model.velocity_damping_stiffness == 0.0 {
+        return;
+    }
+    for ((body, state), forces) in model.bodies.iter().zip(&state.bodies).zip(&mut scratch.forces) {
+        forces.drag = body_drag(body, state, model.velocity_damping_stiffness);
+    }
+}
+
+/// With equal particles carrying the mass, Σ rᵢ = 0 and Σ rᵢ × (ω × rᵢ) = L/m, so that
+/// F = −(c/m) M v and τ = −(c/m) L. Else F = −c (N v + ω × S) and τ = −c (S × v + G ω), with
+/// S = Σ R rᵢ and G = R Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) Rᵀ.
+fn body_drag(body: &BodyModel, state: &BodyState, c: f64) -> Wrench {
+    let moments = body.shape.moments();
+    if moments.carry_mass {
+        let rate = c / body.particle_mass();
+        return Wrench {
+            force: -rate * body.mass * state.velocity,
+            torque: -rate * state.angular_momentum,
+        };
+    }
+    let rotation = DMat3::from_quat(state.orientation);
+    let omega = body.angular_velocity(rotation, state.angular_momentum);
+    let s = rotation * moments.first;
+    let g_omega = rotation * (moments.second * (rotation.transpose() * omega));
+    Wrench {
+        force: -c * (moments.count * state.velocity + omega.cross(s)),
+        torque: -c * (s.cross(state.velocity) + g_omega),
+    }
+}

@@ -1,0 +1,135 @@
+//! What a user holds: build, step, read.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::{
+    BodyModel, BodyState, Energy, Model, Scratch, State, StepError, WorldBuilder, step::step,
+};
+
+/// A model and its state, and the means to advance it.
+#[derive(Clone, Debug)]
+pub struct World {
+    model: Model,
+    state: State,
+    scratch: Scratch,
+}
+
+impl World {
+    /// Starts the description of a world.
+    pub fn builder() -> WorldBuilder {
+        WorldBuilder::default()
+    }
+
+    pub(crate) fn of(model: Model, state: State) -> Self {
+        Self { model, state, scratch: Scratch::default() }
+    }
+
+    /// Advances time by one step of [`World::dt`].
+    ///
+    /// # Errors
+    /// [`StepError`] when the new state cannot be trusted; the world then keeps it, for inspection.
+    pub fn step(&mut self) -> Result<(), StepError> {
+        step(&self.model, &mut self.state, &mut self.scratch)
+    }
+
+    /// Time t (s).
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// Time step h (s).
+    pub fn dt(&self) -> f64 {
+        self.model.dt
+    }
+
+    /// What stays the same during the run.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// All that evolves.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// How many bodies there are.
+    pub fn body_count(&self) -> usize {
+        self.model.bodies.len()
+    }
+
+    /// One body, in the order in which they were added.
+    ///
+    /// # Panics
+    /// When `index` is not below [`World::body_count`].
+    pub fn body(&self, index: usize) -> BodyView<'_> {
+        BodyView { model: &self.model.bodies[index], state: &self.state.bodies[index] }
+    }
+
+    /// All bodies, in the order in which they were added.
+    pub fn bodies(&self) -> impl ExactSizeIterator<Item = BodyView<'_>> {
+        (0..self.body_count()).map(|index| self.body(index))
+    }
+
+    /// Where the energy is, or went.
+    pub fn energy(&self) -> Energy {
+        Energy::of(&self.model, &self.state)
+    }
+}
+
+/// Read access to one body.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyView<'a> {
+    model: &'a BodyModel,
+    state: &'a BodyState,
+}
+
+impl<'a> BodyView<'a> {
+    /// Its name.
+    pub fn name(&self) -> &'a str {
+        &self.model.name
+    }
+
+    /// Its mass, inertia, shape: all that is constant.
+    pub fn model(&self) -> &'a BodyModel {
+        self.model
+    }
+
+    /// Centre of mass x (m).
+    pub fn position(&self) -> DVec3 {
+        self.state.position
+    }
+
+    /// Velocity v of the centre of mass (m/s).
+    pub fn velocity(&self) -> DVec3 {
+        self.state.velocity
+    }
+
+    /// Orientation q, body axes to world axes.
+    pub fn orientation(&self) -> DQuat {
+        self.state.orientation
+    }
+
+    /// Angular momentum L about the centre of mass, world axes (kg·m²/s).
+    pub fn angular_momentum(&self) -> DVec3 {
+        self.state.angular_momentum
+    }
+
+    /// Angular velocity ω, world axes (rad/s).
+    pub fn angular_velocity(&self) -> DVec3 {
+        let rotation = DMat3::from_quat(self.state.orientation);
+        self.model.angular_velocity(rotation, self.state.angular_momentum)
+    }
+
+    /// How many particles it has.
+    pub fn particle_count(&self) -> usize {
+        self.model.shape.particles().len()
+    }
+
+    /// Place (m) and velocity (m/s) of one particle, world axes.
+    ///
+    /// # Panics
+    /// When `index` is not below [`BodyView::particle_count`].
+    pub fn particle(&self, index: usize) -> (DVec3, DVec3) {
+        self.model.particle(self.state, index)
+    }
+}
