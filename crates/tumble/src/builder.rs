@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
-    BodyModel, BodyState, BuildError, Integrator, Material, Model, Shape, State, WallBox,
-    WallPlane, World,
+    BodyModel, BodyState, BuildError, BuildErrors, Integrator, Material, MaterialOverride, Model,
+    Shape, State, WallBox, WallPlane, World,
 };
 
 /// A body as a user describes it.
@@ -19,7 +19,7 @@ pub struct Body {
     orientation: DQuat,
     velocity: DVec3,
     angular_velocity: DVec3,
-    material: Option<Material>,
+    material: MaterialOverride,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +39,7 @@ impl Body {
             orientation: DQuat::IDENTITY,
             velocity: DVec3::ZERO,
             angular_velocity: DVec3::ZERO,
-            material: None,
+            material: MaterialOverride::default(),
         }
     }
 
@@ -86,8 +86,8 @@ impl Body {
     }
 
     /// The material of its contacts, where it is not the world's.
-    pub fn material(mut self, material: Material) -> Self {
-        self.material = Some(material);
+    pub fn material(mut self, material: MaterialOverride) -> Self {
+        self.material = material;
         self
     }
 }
@@ -100,7 +100,7 @@ pub struct WorldBuilder {
     dt: f64,
     integrator: Integrator,
     material: Material,
-    walls: Vec<(WallPlane, Option<Material>)>,
+    walls: Vec<(WallPlane, MaterialOverride)>,
     bodies: Vec<Body>,
 }
 
@@ -151,14 +151,13 @@ impl WorldBuilder {
     }
 
     /// Adds a wall.
-    pub fn wall(mut self, wall: WallPlane) -> Self {
-        self.walls.push((wall, None));
-        self
+    pub fn wall(self, wall: WallPlane) -> Self {
+        self.wall_of(wall, MaterialOverride::default())
     }
 
     /// Adds a wall of its own material.
-    pub fn wall_of(mut self, wall: WallPlane, material: Material) -> Self {
-        self.walls.push((wall, Some(material)));
+    pub fn wall_of(mut self, wall: WallPlane, material: MaterialOverride) -> Self {
+        self.walls.push((wall, material));
         self
     }
 
@@ -176,9 +175,10 @@ impl WorldBuilder {
     /// Checks everything and starts the world at t = 0.
     ///
     /// # Errors
-    /// [`BuildError`] names the first quantity that cannot work and says what is allowed.
-    pub fn build(self) -> Result<World, BuildError> {
-        self.check_world()?;
+    /// [`BuildErrors`] names every quantity that cannot work and says what is allowed.
+    pub fn build(self) -> Result<World, BuildErrors> {
+        let mut errors = Vec::new();
+        self.check_world(&mut errors);
         let mut model = Model {
             gravity: self.gravity,
             velocity_damping_stiffness: self.velocity_damping_stiffness,
@@ -190,39 +190,49 @@ impl WorldBuilder {
         let mut state = State::default();
         for (index, body) in self.bodies.iter().enumerate() {
             let name = body.name.clone().unwrap_or_else(|| format!("body {index}"));
-            let body_model = self.body_model(name, body)?;
-            let body_state = body_state(&body_model, body)?;
-            check_inside(&model, &body_model, &body_state)?;
-            model.bodies.push(body_model);
-            state.bodies.push(body_state);
+            match self.start(&model, name, body) {
+                Ok((body_model, body_state)) => {
+                    model.bodies.push(body_model);
+                    state.bodies.push(body_state);
+                }
+                Err(error) => errors.push(error),
+            }
         }
-        check_names(&model)?;
-        Ok(World::of(model, state))
+        errors.extend(same_names(&model));
+        if errors.is_empty() { Ok(World::of(model, state)) } else { Err(BuildErrors(errors)) }
     }
 
-    fn check_world(&self) -> Result<(), BuildError> {
-        let check = |quantity, ok: bool, value: &dyn std::fmt::Display, allowed| {
-            if ok {
-                return Ok(());
+    fn check_world(&self, errors: &mut Vec<BuildError>) {
+        let mut check = |quantity, ok: bool, value: &dyn std::fmt::Display, allowed| {
+            if !ok {
+                errors.push(BuildError::World { quantity, value: value.to_string(), allowed });
             }
-            Err(BuildError::World { quantity, value: value.to_string(), allowed })
         };
         let c = self.velocity_damping_stiffness;
-        check("dt", self.dt > 0.0 && self.dt.is_finite(), &self.dt, "a number of seconds above 0")?;
-        check("gravity", self.gravity.is_finite(), &self.gravity, "three finite numbers (m/s²)")?;
+        check("dt", self.dt > 0.0 && self.dt.is_finite(), &self.dt, "a number of seconds above 0");
+        check("gravity", self.gravity.is_finite(), &self.gravity, "three finite numbers (m/s²)");
         let allowed = "a number of N·s/m, 0 or more";
-        check("velocity_damping_stiffness", c >= 0.0 && c.is_finite(), &c, allowed)?;
-        let materials = self
-            .walls
-            .iter()
-            .filter_map(|(_, material)| *material)
-            .chain(self.bodies.iter().filter_map(|body| body.material))
-            .chain([self.material]);
+        check("velocity_damping_stiffness", c >= 0.0 && c.is_finite(), &c, allowed);
+        let overrides = self.walls.iter().map(|(_, material)| *material);
+        let overrides = overrides.chain(self.bodies.iter().map(|body| body.material));
+        let materials = overrides.map(|own| own.over(self.material)).chain([self.material]);
         for Material { collision_stiffness: k } in materials {
             let ok = k >= 0.0 && k.is_finite();
-            check("collision_stiffness", ok, &k, "a number of N/m, 0 or more")?;
+            check("collision_stiffness", ok, &k, "a number of N/m, 0 or more");
         }
-        Ok(())
+    }
+
+    /// One body at t = 0, checked.
+    fn start(
+        &self,
+        model: &Model,
+        name: String,
+        body: &Body,
+    ) -> Result<(BodyModel, BodyState), BuildError> {
+        let body_model = self.body_model(name, body)?;
+        let body_state = body_state(&body_model, body)?;
+        check_inside(model, &body_model, &body_state)?;
+        Ok((body_model, body_state))
     }
 
     fn body_model(&self, name: String, body: &Body) -> Result<BodyModel, BuildError> {
@@ -244,9 +254,8 @@ impl WorldBuilder {
                 allowed,
             });
         }
-        let contact = |&(_, wall): &(WallPlane, Option<Material>)| {
-            wall.or(body.material).unwrap_or(self.material)
-        };
+        let contact =
+            |(_, wall): &(_, MaterialOverride)| self.material.between(*wall, body.material);
         Ok(BodyModel {
             name,
             shape: Arc::clone(&body.shape),
@@ -305,11 +314,11 @@ fn check_inside(model: &Model, body: &BodyModel, state: &BodyState) -> Result<()
     Ok(())
 }
 
-fn check_names(model: &Model) -> Result<(), BuildError> {
+fn same_names(model: &Model) -> Vec<BuildError> {
     let mut names: Vec<_> = model.bodies.iter().map(|body| &body.name).collect();
     names.sort_unstable();
-    match names.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(BuildError::SameName { body: pair[0].clone() }),
-        None => Ok(()),
-    }
+    let mut twice: Vec<_> =
+        names.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();
+    twice.dedup();
+    twice.into_iter().map(|name| BuildError::SameName { body: name.clone() }).collect()
 }

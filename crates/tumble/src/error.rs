@@ -62,6 +62,22 @@ impl std::fmt::Display for BuildError {
 
 impl std::error::Error for BuildError {}
 
+/// Everything that keeps a world from being built.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BuildErrors(
+    /// One entry a problem, at least one.
+    pub Vec<BuildError>,
+);
+
+impl std::fmt::Display for BuildErrors {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let lines: Vec<_> = self.0.iter().map(BuildError::to_string).collect();
+        f.write_str(&lines.join("\n"))
+    }
+}
+
+impl std::error::Error for BuildErrors {}
+
 /// A step whose result cannot be trusted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepError {

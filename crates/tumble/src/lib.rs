@@ -50,9 +50,9 @@ mod world;
 
 pub use builder::{Body, WorldBuilder};
 pub use energy::Energy;
-pub use error::{BuildError, StepError};
+pub use error::{BuildError, BuildErrors, StepError};
 pub use glam::{DMat3, DQuat, DVec3};
-pub use material::Material;
+pub use material::{Material, MaterialOverride};
 pub use model::{BodyModel, Integrator, Model};
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{

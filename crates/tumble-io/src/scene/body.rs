@@ -1,0 +1,119 @@
+//! One `[[body]]`, key by key.
+
+use std::path::PathBuf;
+
+use tumble::{DVec3, MassModel, Sampling};
+
+use super::description::{BodyScene, Copies, Geometry, MassScene};
+use super::geometry::{MASS_MODELS, shape_scene};
+use super::read::{material, orientation};
+use super::reader::{Range, Reader};
+
+/// More bodies than this are a slip of the keyboard.
+const MOST_COPIES: u64 = 1_000_000;
+
+/// Reads body number `index`; `None` where it cannot be made sense of.
+pub fn body(reader: Reader, index: usize) -> Option<BodyScene> {
+    let geometry = geometry(&reader);
+    let name = match reader.string("name") {
+        Some("") => {
+            reader.problem("name", "must not be empty");
+            String::new()
+        }
+        Some(name) if name.contains([',', '"', '\n', '\r']) => {
+            reader.problem("name", "must not contain commas, quotes or line breaks");
+            name.to_owned()
+        }
+        Some(name) => name.to_owned(),
+        None => format!("body {index}"),
+    };
+    let body = BodyScene {
+        name,
+        scale: reader.number("scale", Range::Positive).unwrap_or(1.0),
+        sampling: sampling(&reader),
+        mass_model: mass_model(&reader),
+        mass: mass(&reader),
+        position: reader.vector("position"),
+        orientation: orientation(&reader),
+        initial_velocity: reader.vector("initial_velocity").unwrap_or(DVec3::ZERO),
+        initial_angular_velocity: reader.vector("initial_angular_velocity").unwrap_or(DVec3::ZERO),
+        material: material(&reader),
+        copies: reader.table("copies").and_then(copies),
+        geometry: geometry.unwrap_or(Geometry::Particles(vec![DVec3::ZERO])),
+    };
+    reader.finish();
+    Some(body)
+}
+
+fn geometry(reader: &Reader) -> Option<Geometry> {
+    match reader.only_one(&["mesh", "shape", "particles"]) {
+        Some("mesh") => {
+            let weld = reader.boolean("weld");
+            let sha256 = reader.string("mesh_sha256").unwrap_or_default().to_lowercase();
+            let path = PathBuf::from(reader.string("mesh")?);
+            Some(Geometry::Mesh { path, sha256, weld })
+        }
+        Some("shape") => shape_scene(reader).map(Geometry::Shape),
+        Some(_) => reader.points("particles").map(Geometry::Particles),
+        None => {
+            reader.problem("", "needs one of `mesh = \"FILE\"`, `shape = \"NAME\"` or `particles = [[x, y, z], …]`");
+            None
+        }
+    }
+}
+
+fn sampling(reader: &Reader) -> Sampling {
+    let choice = reader.choice("sampling", &["vertices", "surface", "volume"]);
+    let spacing = reader.number("spacing", Range::Positive);
+    if let Some(kind @ ("surface" | "volume")) = choice {
+        if !reader.has("spacing") {
+            let message = format!("\"{kind}\" needs `spacing`, the distance between particles (m)");
+            reader.problem("sampling", message);
+        }
+        let spacing = spacing.unwrap_or(1.0);
+        return if kind == "surface" {
+            Sampling::Surface { spacing }
+        } else {
+            Sampling::Volume { spacing }
+        };
+    }
+    if reader.has("spacing") {
+        reader.problem("spacing", "only goes with sampling = \"surface\" or \"volume\"");
+    }
+    Sampling::Vertices
+}
+
+fn mass_model(reader: &Reader) -> MassModel {
+    let choice = reader.choice("mass_model", &MASS_MODELS.map(|(name, _)| name));
+    MASS_MODELS.iter().find(|(name, _)| Some(*name) == choice).map_or(MassModel::default(), |m| m.1)
+}
+
+fn mass(reader: &Reader) -> MassScene {
+    reader.only_one(&["particle_mass", "mass", "density"]);
+    let particle = reader.number("particle_mass", Range::Positive).map(MassScene::Particle);
+    let total = reader.number("mass", Range::Positive).map(MassScene::Total);
+    let density = reader.number("density", Range::Positive).map(MassScene::Density);
+    particle.or(total).or(density).unwrap_or(MassScene::Particle(1.0))
+}
+
+fn copies(reader: Reader) -> Option<Copies> {
+    let count = reader.numbers::<3>("count", Range::Positive);
+    let spacing = reader.vector("spacing");
+    let seed = reader.integer("seed", 0, i64::MAX).map(|seed| seed as u64);
+    for key in ["count", "spacing"] {
+        if !reader.has(key) {
+            reader.problem(key, "is missing: copies need `count` and `spacing`, each [x, y, z]");
+        }
+    }
+    let count = count.filter(|count| {
+        let whole = count.iter().all(|n| n.fract() == 0.0);
+        let total: f64 = count.iter().product();
+        if !whole || total > MOST_COPIES as f64 {
+            let message = format!("must hold whole numbers whose product is at most {MOST_COPIES}");
+            reader.problem("count", message);
+        }
+        whole && total <= MOST_COPIES as f64
+    });
+    reader.finish();
+    Some(Copies { count: count?.map(|n| n as u32), spacing: spacing?, seed })
+}

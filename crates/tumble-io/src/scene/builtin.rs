@@ -1,0 +1,37 @@
+//! The scenes of `scenes/`, built into the program.
+
+/// A scene that comes with the program.
+#[derive(Clone, Copy, Debug)]
+pub struct Builtin {
+    /// Its name.
+    pub name: &'static str,
+    /// Its TOML text.
+    pub text: &'static str,
+}
+
+macro_rules! builtin {
+    ($($name:literal),* $(,)?) => {
+        [$(Builtin {
+            name: $name,
+            text: include_str!(concat!("../../../../scenes/", $name, ".toml")),
+        }),*]
+    };
+}
+
+/// All built-in scenes, in the order in which they teach.
+pub const BUILTIN: [Builtin; 9] = builtin![
+    "task1", "task2", "cat1", "cat2", "top", "racket", "coin", "slope", "many",
+];
+
+/// The built-in scene of that name.
+pub fn builtin(name: &str) -> Option<Builtin> {
+    BUILTIN.iter().find(|scene| scene.name == name).copied()
+}
+
+impl Builtin {
+    /// The scene's own one-line description.
+    pub fn description(&self) -> Option<&'static str> {
+        let line = self.text.lines().find_map(|line| line.strip_prefix("description = \""))?;
+        line.strip_suffix('"')
+    }
+}

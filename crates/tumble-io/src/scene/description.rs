@@ -1,0 +1,148 @@
+//! A scene as data: what a file says, with every default filled in.
+
+use std::path::PathBuf;
+
+use tumble::{DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Sampling, WallBox, WallPlane};
+
+use super::geometry::ShapeScene;
+
+/// What to simulate, and what to write of it.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name of the file without its ending, or of the built-in scene.
+    pub name: String,
+    /// One line for people.
+    pub description: Option<String>,
+    /// Simulated time (s).
+    pub duration: f64,
+    /// Time step h (s).
+    pub dt: f64,
+    /// How a step advances time.
+    pub integrator: Integrator,
+    /// Gravity g (m/s²).
+    pub gravity: DVec3,
+    /// Drag c of the medium on every particle (N·s/m).
+    pub velocity_damping_stiffness: f64,
+    /// The material of contacts that neither wall nor body says otherwise about.
+    pub collision: Material,
+    /// The box, if there is one.
+    pub walls_of_box: Option<BoxScene>,
+    /// The single walls.
+    pub walls: Vec<WallScene>,
+    /// The bodies, before copies.
+    pub bodies: Vec<BodyScene>,
+    /// What to write.
+    pub output: OutputScene,
+}
+
+/// `[box]`.
+#[derive(Clone, Copy, Debug)]
+pub struct BoxScene {
+    /// Its faces.
+    pub walls: WallBox,
+    /// Its own material.
+    pub material: MaterialOverride,
+}
+
+/// One `[[wall]]`.
+#[derive(Clone, Copy, Debug)]
+pub struct WallScene {
+    /// The plane.
+    pub plane: WallPlane,
+    /// Its own material.
+    pub material: MaterialOverride,
+}
+
+/// One `[[body]]`.
+#[derive(Clone, Debug)]
+pub struct BodyScene {
+    /// Its name.
+    pub name: String,
+    /// Where its mesh or particles come from.
+    pub geometry: Geometry,
+    /// Factor on all coordinates.
+    pub scale: f64,
+    /// Which points of the mesh become particles.
+    pub sampling: Sampling,
+    /// How the mass is spread.
+    pub mass_model: MassModel,
+    /// How much mass there is.
+    pub mass: MassScene,
+    /// Centre of mass at the start (m); `None`: where the coordinates say.
+    pub position: Option<DVec3>,
+    /// Orientation at the start.
+    pub orientation: DQuat,
+    /// Velocity at the start (m/s).
+    pub initial_velocity: DVec3,
+    /// Angular velocity at the start, world axes (rad/s).
+    pub initial_angular_velocity: DVec3,
+    /// Its own material.
+    pub material: MaterialOverride,
+    /// How often and where it is repeated.
+    pub copies: Option<Copies>,
+}
+
+/// Where the points of a body come from.
+#[derive(Clone, Debug)]
+pub enum Geometry {
+    /// A mesh file.
+    Mesh {
+        /// Its path; relative to the scene's folder when read.
+        path: PathBuf,
+        /// SHA-256 of the file, lower-case hexadecimal, known once it is read.
+        sha256: String,
+        /// Whether exact duplicates among its vertices are merged; `None`: as the format suggests.
+        weld: Option<bool>,
+    },
+    /// A built-in shape.
+    Shape(ShapeScene),
+    /// Points, written in the scene.
+    Particles(Vec<DVec3>),
+}
+
+/// The key that says how much mass a body has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MassScene {
+    /// `particle_mass`: kg in each particle.
+    Particle(f64),
+    /// `mass`: kg in all.
+    Total(f64),
+    /// `density`: kg/m³ of the enclosed volume, or kg/m² of the surface for a shell.
+    Density(f64),
+}
+
+/// `copies`: a lattice of bodies, centred on the body's place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Copies {
+    /// How many along x, y and z.
+    pub count: [u32; 3],
+    /// Distance between neighbours along x, y and z (m).
+    pub spacing: DVec3,
+    /// Seed of random orientations; `None`: all as the body's.
+    pub seed: Option<u64>,
+}
+
+/// `[output]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutputScene {
+    /// Time between frames (s).
+    pub interval: f64,
+}
+
+impl Default for OutputScene {
+    fn default() -> Self {
+        Self { interval: 1.0 / 60.0 }
+    }
+}
+
+impl Scene {
+    /// How many steps the run takes: the whole number nearest to duration/dt.
+    pub fn step_count(&self) -> u64 {
+        (self.duration / self.dt).round() as u64
+    }
+
+    /// The step of frame number `frame`: the one nearest to its time.
+    pub fn frame_step(&self, frame: u64) -> u64 {
+        (frame as f64 * self.output.interval / self.dt).round() as u64
+    }
+}

@@ -1,0 +1,186 @@
+//! Built-in shapes by name, and the making of a [`Shape`] from what a body says.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use tumble::{MassModel, Mesh, Primitive, Sampling, Shape, ShapeError};
+
+use super::description::{BodyScene, Geometry, MassScene};
+use super::reader::{Range, Reader};
+use crate::mesh::{Format, parse_mesh, read_mesh};
+
+/// The names of the mass models in scene files.
+pub const MASS_MODELS: [(&str, MassModel); 3] = [
+    ("particles", MassModel::Particles),
+    ("shell", MassModel::Shell),
+    ("solid", MassModel::Solid),
+];
+
+const CAT: &[u8] = include_bytes!("../../../../assets/cat.obj");
+
+/// A built-in shape with its keys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShapeScene {
+    /// A shape given by formulas.
+    Primitive(Primitive),
+    /// The sitting cat of `assets/cat.obj`, two metres high before `scale`.
+    Cat,
+}
+
+impl ShapeScene {
+    /// Its name in scene files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Primitive(primitive) => primitive.name(),
+            Self::Cat => "cat",
+        }
+    }
+}
+
+/// Reads `shape = "NAME"` and the keys that this shape has.
+pub fn shape_scene(reader: &Reader) -> Option<ShapeScene> {
+    let mut names = Primitive::NAMES.to_vec();
+    names.push("cat");
+    let mut primitive = match reader.choice("shape", &names)? {
+        "cat" => return Some(ShapeScene::Cat),
+        name => Primitive::named(name)?,
+    };
+    let length = |key, target: &mut f64| {
+        *target = reader.number(key, Range::Positive).unwrap_or(*target);
+    };
+    let count = |key, target: &mut u32, most| {
+        *target = reader.integer(key, 0, most).map_or(*target, |n| n as u32);
+    };
+    match &mut primitive {
+        Primitive::Sphere { radius, subdivisions } => {
+            length("radius", radius);
+            count("subdivisions", subdivisions, 9);
+        }
+        Primitive::Box { size, divisions } => {
+            *size = reader.vector("size").unwrap_or(*size);
+            count("divisions", divisions, 1000);
+        }
+        Primitive::Cylinder { radius, height, segments }
+        | Primitive::Capsule { radius, height, segments } => {
+            length("radius", radius);
+            length("height", height);
+            count("segments", segments, 10_000);
+        }
+        Primitive::Torus { radius, tube_radius, segments }
+        | Primitive::Knot { radius, tube_radius, segments } => {
+            length("radius", radius);
+            length("tube_radius", tube_radius);
+            count("segments", segments, 10_000);
+        }
+        Primitive::Dumbbell { radius, length: long, bar_radius, segments } => {
+            length("radius", radius);
+            length("length", long);
+            length("bar_radius", bar_radius);
+            count("segments", segments, 10_000);
+        }
+        Primitive::THandle { length: long, width, thickness, divisions } => {
+            length("length", long);
+            length("width", width);
+            length("thickness", thickness);
+            count("divisions", divisions, 1000);
+        }
+        Primitive::Tetrahedron { size } => length("size", size),
+    }
+    Some(ShapeScene::Primitive(primitive))
+}
+
+/// A shape that cannot be made: the key to point at, and what is wrong.
+#[derive(Debug)]
+pub struct GeometryError {
+    /// Key of the body that is to blame.
+    pub key: &'static str,
+    /// What is wrong and what to do.
+    pub message: String,
+}
+
+fn blame(key: &'static str, message: impl std::fmt::Display) -> GeometryError {
+    GeometryError { key, message: message.to_string() }
+}
+
+/// A shape and the mass that goes with it.
+#[derive(Clone, Debug)]
+pub struct Made {
+    /// The shape.
+    pub shape: Arc<Shape>,
+    /// Total mass (kg).
+    pub mass: f64,
+}
+
+/// Makes the shape of a body. `folder` is where relative mesh paths start; the mesh's hash is
+/// checked against the scene's, if that has one, and written into it.
+pub fn make(body: &mut BodyScene, folder: &Path) -> Result<Made, GeometryError> {
+    let mut mesh = points_of(&mut body.geometry, folder)?;
+    for vertex in &mut mesh.vertices {
+        *vertex *= body.scale;
+    }
+    let bare = matches!(body.geometry, Geometry::Particles(_));
+    let shape = if bare && body.sampling == Sampling::Vertices && body.mass_model == MassModel::Particles {
+        Shape::of_particles(&mesh.vertices)
+    } else {
+        Shape::of_mesh(&mesh, body.sampling, body.mass_model)
+    };
+    let shape = shape.map_err(|error| blame(guilty_key(body, &error), error))?;
+    let mass = mass(body, &mesh, &shape)?;
+    Ok(Made { shape: Arc::new(shape), mass })
+}
+
+fn points_of(geometry: &mut Geometry, folder: &Path) -> Result<Mesh, GeometryError> {
+    match geometry {
+        Geometry::Particles(points) => Ok(Mesh { vertices: points.clone(), triangles: Vec::new() }),
+        Geometry::Shape(ShapeScene::Primitive(primitive)) => {
+            primitive.mesh().map_err(|error| blame("shape", error))
+        }
+        Geometry::Shape(ShapeScene::Cat) => parse_mesh(Format::Obj, CAT, None, None)
+            .map(|file| file.mesh)
+            .map_err(|error| blame("shape", error)),
+        Geometry::Mesh { path, sha256, weld } => {
+            let full = folder.join(&*path);
+            let file = read_mesh(&full, *weld).map_err(|error| blame("mesh", error))?;
+            if !sha256.is_empty() && *sha256 != file.sha256 {
+                let message = format!(
+                    "does not match: {} has {}; the mesh is not the one that this scene was made with",
+                    full.display(),
+                    file.sha256
+                );
+                return Err(blame("mesh_sha256", message));
+            }
+            *sha256 = file.sha256;
+            *path = std::path::absolute(&full).unwrap_or(full);
+            Ok(file.mesh)
+        }
+    }
+}
+
+/// Which key to point at when a shape cannot be made.
+fn guilty_key(body: &BodyScene, error: &ShapeError) -> &'static str {
+    match error {
+        ShapeError::Sample(_) => "sampling",
+        ShapeError::Open(_) | ShapeError::Shell(_) => "mass_model",
+        ShapeError::TooLarge => "scale",
+        _ => match body.geometry {
+            Geometry::Mesh { .. } => "mesh",
+            Geometry::Shape(_) => "shape",
+            Geometry::Particles(_) => "particles",
+        },
+    }
+}
+
+fn mass(body: &BodyScene, mesh: &Mesh, shape: &Shape) -> Result<f64, GeometryError> {
+    match body.mass {
+        MassScene::Particle(mass) => Ok(mass * shape.moments().count),
+        MassScene::Total(mass) => Ok(mass),
+        MassScene::Density(density) => {
+            let measure = if body.mass_model == MassModel::Shell {
+                mesh.shell_integrals().map_err(|error| blame("density", error))?.measure
+            } else {
+                mesh.solid_integrals().map_err(|error| blame("density", error))?.measure
+            };
+            Ok(density * measure)
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Scenes: TOML files that say what to simulate.
+//!
+//! [`load_file`] and [`load_builtin`] read a scene, lay `--set` overrides over it, check every key
+//! and build the world. Whatever is wrong is reported at once, with file, line and column.
+
+mod body;
+mod builtin;
+mod copies;
+mod description;
+mod geometry;
+mod load;
+mod problem;
+mod read;
+mod reader;
+mod tree;
+mod write;
+
+pub use builtin::{BUILTIN, Builtin, builtin};
+pub use description::{
+    BodyScene, BoxScene, Copies, Geometry, MassScene, OutputScene, Scene, WallScene,
+};
+pub use load::{Loaded, load_builtin, load_file, load_text};
+pub use problem::SceneError;
+pub use reader::nearest;

@@ -1,0 +1,133 @@
+//! The top level of a scene file, key by key.
+
+use std::cell::RefCell;
+
+use tumble::{DQuat, DVec3, Integrator, Material, MaterialOverride, WallBox, WallPlane};
+
+use super::body;
+use super::description::{BoxScene, OutputScene, Scene, WallScene};
+use super::problem::Problem;
+use super::reader::{Range, Reader};
+use super::tree::Node;
+
+/// More steps than a double can count cannot be meant.
+const MOST_STEPS: f64 = 9e15;
+
+/// Reads a whole scene; what is wrong goes to `problems`, and a default takes its place.
+pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> Scene {
+    let top = Reader::new(root, String::new(), problems);
+    let duration = top.number("duration", Range::NotNegative).unwrap_or(3.0);
+    let dt = top.number("dt", Range::Positive).unwrap_or(1e-3);
+    if duration / dt > MOST_STEPS {
+        let key = if top.has("dt") { "dt" } else { "duration" };
+        top.problem(key, format!("leads to {:e} steps, more than can be counted", duration / dt));
+    }
+    let collision = match top.table("collision") {
+        None => Material::default(),
+        Some(reader) => {
+            let keys = material(&reader);
+            reader.finish();
+            keys.over(Material::default())
+        }
+    };
+    let walls_of_box = top.table("box").and_then(walls_of_box);
+    let walls = top.tables("wall").into_iter().filter_map(wall).collect();
+    let bodies: Vec<_> = top.tables("body");
+    if bodies.is_empty() && !top.has("body") {
+        let problem = Problem::new(top.place().clone(), "", "the scene has no body");
+        top.report(problem.help("add one, for example:\n[[body]]\nshape = \"sphere\""));
+    }
+    let scene = Scene {
+        name,
+        description: top.string("description").map(str::to_owned),
+        duration,
+        dt,
+        integrator: integrator(&top),
+        gravity: top.vector("gravity").unwrap_or(DVec3::new(0.0, -9.8, 0.0)),
+        velocity_damping_stiffness: top
+            .number("velocity_damping_stiffness", Range::NotNegative)
+            .unwrap_or(0.0),
+        collision,
+        walls_of_box,
+        walls,
+        bodies: bodies.into_iter().enumerate().filter_map(|(i, b)| body::body(b, i)).collect(),
+        output: top.table("output").map_or_else(OutputScene::default, output),
+    };
+    top.finish();
+    scene
+}
+
+fn integrator(top: &Reader) -> Integrator {
+    const NAMES: [&str; 1] = ["euler"];
+    match top.choice("integrator", &NAMES) {
+        Some("euler") => Integrator::Euler,
+        _ => Integrator::default(),
+    }
+}
+
+/// The keys of a material, in any table that may hold them.
+pub fn material(reader: &Reader) -> MaterialOverride {
+    MaterialOverride { collision_stiffness: reader.number("collision_stiffness", Range::NotNegative) }
+}
+
+fn walls_of_box(reader: Reader) -> Option<BoxScene> {
+    let (min, max) = (reader.vector("min"), reader.vector("max"));
+    for key in ["min", "max"] {
+        if !reader.has(key) {
+            reader.problem(key, "is missing: a box needs `min` and `max`, two corners [x, y, z]");
+        }
+    }
+    let open = reader.choices("open", &WallBox::FACES).unwrap_or_default();
+    let walls = WallBox {
+        min: min.unwrap_or(DVec3::NEG_ONE),
+        max: max.unwrap_or(DVec3::ONE),
+        orientation: orientation(&reader),
+        open: WallBox::FACES.map(|face| open.contains(&face)),
+    };
+    let material = material(&reader);
+    if min.is_some() && max.is_some() && !walls.min.cmplt(walls.max).all() {
+        reader.problem("max", "must lie above `min` in x, y and z");
+    }
+    reader.finish();
+    Some(BoxScene { walls, material })
+}
+
+/// `orientation = [w, x, y, z]`; of any length but zero.
+pub fn orientation(reader: &Reader) -> DQuat {
+    let Some([w, x, y, z]) = reader.numbers::<4>("orientation", Range::Finite) else {
+        return DQuat::IDENTITY;
+    };
+    let largest = [w, x, y, z].iter().fold(0.0f64, |m, c| m.max(c.abs()));
+    if largest == 0.0 {
+        reader.problem("orientation", "must not be all zeros; [1, 0, 0, 0] is not turned at all");
+        return DQuat::IDENTITY;
+    }
+    let q = DQuat::from_xyzw(x, y, z, w);
+    // one that is normalised already keeps its bits
+    if (q.length_squared() - 1.0).abs() < 4.0 * f64::EPSILON { q } else { (q / largest).normalize() }
+}
+
+fn wall(reader: Reader) -> Option<WallScene> {
+    let normal = reader.vector("normal");
+    if !reader.has("normal") {
+        reader.problem("normal", "is missing: a wall needs the direction out of it, [x, y, z]");
+    }
+    let offset = reader.number("offset", Range::Finite).unwrap_or(0.0);
+    let plane = normal.and_then(|normal| {
+        let plane = WallPlane::new(normal, offset);
+        if plane.is_none() {
+            reader.problem("normal", "must not be zero: it is the direction out of the wall");
+        }
+        plane
+    });
+    let material = material(&reader);
+    reader.finish();
+    plane.map(|plane| WallScene { plane, material })
+}
+
+fn output(reader: Reader) -> OutputScene {
+    let default = OutputScene::default();
+    let interval = reader.number("interval", Range::Positive).unwrap_or(default.interval);
+    reader.finish();
+    OutputScene { interval }
+}

@@ -1,0 +1,325 @@
+//! Reads keys of a table by name, type and range, and collects what is wrong with them.
+
+use std::cell::RefCell;
+
+use tumble::DVec3;
+
+use super::problem::Problem;
+use super::tree::{Entry, Node, Place, Value};
+
+/// What a number may be.
+#[derive(Clone, Copy, Debug)]
+pub enum Range {
+    /// Any finite number.
+    Finite,
+    /// Above 0.
+    Positive,
+    /// 0 or more.
+    NotNegative,
+    /// Above 0, up to 1.
+    UpToOne,
+}
+
+impl Range {
+    fn allows(self, x: f64) -> bool {
+        x.is_finite()
+            && match self {
+                Self::Finite => true,
+                Self::Positive => x > 0.0,
+                Self::NotNegative => x >= 0.0,
+                Self::UpToOne => x > 0.0 && x <= 1.0,
+            }
+    }
+
+    fn text(self) -> &'static str {
+        match self {
+            Self::Finite => "finite",
+            Self::Positive => "above 0",
+            Self::NotNegative => "0 or more",
+            Self::UpToOne => "above 0, up to 1",
+        }
+    }
+}
+
+/// A table while it is read. Keys that nobody asked for are reported by [`Reader::finish`].
+pub struct Reader<'a> {
+    entries: &'a [Entry],
+    place: Place,
+    path: String,
+    asked: RefCell<Vec<&'static str>>,
+    problems: &'a RefCell<Vec<Problem>>,
+}
+
+impl<'a> Reader<'a> {
+    /// Reads `node`, which stands at the dotted `path`; anything but a table is a problem.
+    pub fn new(node: &'a Node, path: String, problems: &'a RefCell<Vec<Problem>>) -> Self {
+        let entries: &[Entry] = match &node.value {
+            Value::Table(entries) => entries,
+            other => {
+                let message = format!("must be a table, but is {}", other.kind());
+                problems.borrow_mut().push(Problem::new(node.place.clone(), path.clone(), message));
+                &[]
+            }
+        };
+        Self { entries, place: node.place.clone(), path, asked: RefCell::default(), problems }
+    }
+
+    /// Where the table itself stands.
+    pub fn place(&self) -> &Place {
+        &self.place
+    }
+
+    /// The dotted name of one of its keys.
+    pub fn key(&self, key: &str) -> String {
+        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+    }
+
+    /// Reports a problem with one of its keys, or with the table where the key is not given.
+    pub fn problem(&self, key: &str, message: impl Into<String>) {
+        self.report(Problem::new(self.place_of(key), self.key(key), message));
+    }
+
+    /// Reports a problem.
+    pub fn report(&self, problem: Problem) {
+        self.problems.borrow_mut().push(problem);
+    }
+
+    /// Where the value of a key stands, or else the table.
+    pub fn place_of(&self, key: &str) -> Place {
+        let found = self.entries.iter().find(|entry| entry.key == key);
+        found.map_or(self.place.clone(), |entry| entry.node.place.clone())
+    }
+
+    /// Whether the key is given.
+    pub fn has(&self, key: &str) -> bool {
+        self.entries.iter().any(|entry| entry.key == key)
+    }
+
+    fn get(&self, key: &'static str) -> Option<&'a Node> {
+        self.asked.borrow_mut().push(key);
+        self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
+    }
+
+    /// A number in a range.
+    pub fn number(&self, key: &'static str, range: Range) -> Option<f64> {
+        let node = self.get(key)?;
+        match number(node) {
+            Some(x) if range.allows(x) => Some(x),
+            Some(x) => {
+                self.problem(key, format!("must be {}, but is {x}", range.text()));
+                None
+            }
+            None => {
+                self.wrong_type(key, node, &format!("a number, {}", range.text()));
+                None
+            }
+        }
+    }
+
+    /// A whole number from `least` to `most`.
+    pub fn integer(&self, key: &'static str, least: i64, most: i64) -> Option<i64> {
+        let node = self.get(key)?;
+        match node.value {
+            Value::Integer(i) if (least..=most).contains(&i) => Some(i),
+            Value::Integer(i) => {
+                self.problem(key, format!("must be from {least} to {most}, but is {i}"));
+                None
+            }
+            _ => {
+                self.wrong_type(key, node, &format!("a whole number from {least} to {most}"));
+                None
+            }
+        }
+    }
+
+    /// An array of exactly `N` numbers in a range.
+    pub fn numbers<const N: usize>(&self, key: &'static str, range: Range) -> Option<[f64; N]> {
+        let node = self.get(key)?;
+        match numbers(node) {
+            Some(x) if x.iter().all(|&x| range.allows(x)) => Some(x),
+            Some(x) => {
+                self.problem(key, format!("must hold numbers that are {}, but is {x:?}", range.text()));
+                None
+            }
+            None => {
+                self.wrong_type(key, node, &format!("an array of {N} numbers"));
+                None
+            }
+        }
+    }
+
+    /// A vector of three finite numbers.
+    pub fn vector(&self, key: &'static str) -> Option<DVec3> {
+        self.numbers::<3>(key, Range::Finite).map(DVec3::from_array)
+    }
+
+    /// An array of points.
+    pub fn points(&self, key: &'static str) -> Option<Vec<DVec3>> {
+        let node = self.get(key)?;
+        let Value::Array(items) = &node.value else {
+            self.wrong_type(key, node, "an array of points [x, y, z]");
+            return None;
+        };
+        if items.is_empty() {
+            self.problem(key, "is empty, but a body needs at least one particle");
+            return None;
+        }
+        let mut points = Vec::with_capacity(items.len());
+        for (index, item) in items.iter().enumerate() {
+            match numbers::<3>(item).map(DVec3::from_array) {
+                Some(point) if point.is_finite() => points.push(point),
+                _ => {
+                    let name = format!("{}.{index}", self.key(key));
+                    let message = "must be a point [x, y, z] of three finite numbers";
+                    self.report(Problem::new(item.place.clone(), name, message));
+                }
+            }
+        }
+        (points.len() == items.len()).then_some(points)
+    }
+
+    /// A boolean.
+    pub fn boolean(&self, key: &'static str) -> Option<bool> {
+        let node = self.get(key)?;
+        if let Value::Boolean(boolean) = node.value {
+            return Some(boolean);
+        }
+        self.wrong_type(key, node, "true or false");
+        None
+    }
+
+    /// A string.
+    pub fn string(&self, key: &'static str) -> Option<&'a str> {
+        let node = self.get(key)?;
+        if let Value::String(text) = &node.value {
+            return Some(text);
+        }
+        self.wrong_type(key, node, "a string");
+        None
+    }
+
+    /// An array of strings, each one of `allowed`.
+    pub fn choices(&self, key: &'static str, allowed: &[&'static str]) -> Option<Vec<&'static str>> {
+        let node = self.get(key)?;
+        let Value::Array(items) = &node.value else {
+            self.wrong_type(key, node, &format!("an array of {}", quoted(allowed)));
+            return None;
+        };
+        Some(items.iter().filter_map(|item| self.choose(key, item, allowed)).collect())
+    }
+
+    /// One of a few words.
+    pub fn choice(&self, key: &'static str, allowed: &[&'static str]) -> Option<&'static str> {
+        let node = self.get(key)?;
+        self.choose(key, node, allowed)
+    }
+
+    fn choose(&self, key: &str, node: &Node, allowed: &[&'static str]) -> Option<&'static str> {
+        let found = match &node.value {
+            Value::String(text) => allowed.iter().find(|word| *word == text).copied(),
+            _ => None,
+        };
+        if found.is_none() {
+            let (said, near) = match &node.value {
+                Value::String(text) => (format!("\"{text}\""), nearest(text, allowed)),
+                other => (other.kind().to_owned(), None),
+            };
+            let message = format!("must be one of {}, but is {said}", quoted(allowed));
+            let problem = Problem::new(node.place.clone(), self.key(key), message);
+            self.report(match near {
+                Some(near) => problem.help(format!("did you mean \"{near}\"?")),
+                None => problem,
+            });
+        }
+        found
+    }
+
+    /// A table inside this one.
+    pub fn table(&self, key: &'static str) -> Option<Reader<'a>> {
+        let node = self.get(key)?;
+        Some(Reader::new(node, self.key(key), self.problems))
+    }
+
+    /// An array of tables, `[[key]]`.
+    pub fn tables(&self, key: &'static str) -> Vec<Reader<'a>> {
+        match self.get(key) {
+            None => Vec::new(),
+            Some(node) => match &node.value {
+                Value::Array(items) => items
+                    .iter()
+                    .enumerate()
+                    .map(|(i, item)| Reader::new(item, format!("{}.{i}", self.key(key)), self.problems))
+                    .collect(),
+                _ => {
+                    let problem = Problem::new(
+                        node.place.clone(),
+                        self.key(key),
+                        format!("must be an array of tables, but is {}", node.value.kind()),
+                    );
+                    self.report(problem.help(format!("write [[{key}]] with two brackets")));
+                    Vec::new()
+                }
+            },
+        }
+    }
+
+    /// Of keys that exclude each other, the one that is given. More than one is a problem.
+    pub fn only_one(&self, keys: &[&'static str]) -> Option<&'static str> {
+        let given: Vec<_> = keys.iter().filter(|key| self.has(key)).copied().collect();
+        if given.len() > 1 {
+            let rest = quoted_keys(&given[..given.len() - 1]);
+            self.problem(given[given.len() - 1], format!("cannot stand beside {rest}: give only one"));
+        }
+        given.first().copied()
+    }
+
+    /// Reports the keys that nobody asked for.
+    pub fn finish(self) {
+        let asked = self.asked.borrow();
+        for entry in self.entries.iter().filter(|entry| !asked.contains(&entry.key.as_str())) {
+            let mut known: Vec<&str> = asked.clone();
+            known.sort_unstable();
+            known.dedup();
+            let help = match nearest(&entry.key, &known) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => format!("known here: {}", quoted_keys(&known)),
+            };
+            let problem = Problem::new(entry.place.clone(), self.key(&entry.key), "is not a known key");
+            self.report(problem.help(help));
+        }
+    }
+
+    fn wrong_type(&self, key: &str, node: &Node, wanted: &str) {
+        let message = format!("must be {wanted}, but is {}", node.value.kind());
+        self.report(Problem::new(node.place.clone(), self.key(key), message));
+    }
+}
+
+fn number(node: &Node) -> Option<f64> {
+    match node.value {
+        Value::Number(x) => Some(x),
+        Value::Integer(i) => Some(i as f64),
+        _ => None,
+    }
+}
+
+fn numbers<const N: usize>(node: &Node) -> Option<[f64; N]> {
+    let Value::Array(items) = &node.value else { return None };
+    let numbers: Option<Vec<f64>> = items.iter().map(number).collect();
+    numbers?.try_into().ok()
+}
+
+/// The word most like `word`, if one is near enough to have been meant.
+pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let score = |candidate: &str| strsim::jaro_winkler(word, candidate);
+    let best = known.iter().copied().max_by(|a, b| score(a).total_cmp(&score(b)))?;
+    (score(best) > 0.75).then_some(best)
+}
+
+fn quoted(words: &[&str]) -> String {
+    words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
+}
+
+fn quoted_keys(keys: &[&str]) -> String {
+    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ")
+}

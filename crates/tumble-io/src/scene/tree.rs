@@ -1,0 +1,181 @@
+//! A TOML document as a tree in which every key and value knows where it stands, and the
+//! overrides of `--set` laid over it.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::problem::{Problem, Source};
+
+/// Where something stands: which source, and which bytes of it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// Index into the sources of a scene: 0 is the file, then one for each override.
+    pub source: usize,
+    /// Bytes of the source's text.
+    pub span: Range<usize>,
+}
+
+/// A value and its place.
+#[derive(Clone, Debug)]
+pub struct Node {
+    pub value: Value,
+    pub place: Place,
+}
+
+/// What TOML can say.
+#[derive(Clone, Debug)]
+pub enum Value {
+    Table(Vec<Entry>),
+    Array(Vec<Node>),
+    Number(f64),
+    Integer(i64),
+    String(String),
+    Boolean(bool),
+    Date(String),
+}
+
+/// A key of a table with its value.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    pub key: String,
+    pub place: Place,
+    pub node: Node,
+}
+
+impl Value {
+    /// What to call it in a message.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Table(_) => "a table",
+            Self::Array(_) => "an array",
+            Self::Number(_) => "a number",
+            Self::Integer(_) => "an integer",
+            Self::String(_) => "a string",
+            Self::Boolean(_) => "a boolean",
+            Self::Date(_) => "a date",
+        }
+    }
+}
+
+/// Parses `text` as source `source`; the syntax errors, if any, all at once.
+pub fn parse(text: &str, source: usize) -> (Node, Vec<Problem>) {
+    let (table, errors) = DeTable::parse_recoverable(text);
+    let problems = errors
+        .iter()
+        .map(|error| {
+            let span = error.span().unwrap_or(0..0);
+            Problem::new(Place { source, span }, "", error.message().to_owned())
+        })
+        .collect();
+    let place = Place { source, span: table.span() };
+    (Node { value: from_table(table.into_inner(), source), place }, problems)
+}
+
+fn from_table(table: DeTable<'_>, source: usize) -> Value {
+    let mut entries: Vec<_> = table
+        .into_iter()
+        .map(|(key, value)| Entry {
+            place: Place { source, span: key.span() },
+            key: key.into_inner().into_owned(),
+            node: from_value(value, source),
+        })
+        .collect();
+    // problems come in the order of the file
+    entries.sort_by_key(|entry| entry.place.span.start);
+    Value::Table(entries)
+}
+
+fn from_value(value: Spanned<DeValue<'_>>, source: usize) -> Node {
+    let place = Place { source, span: value.span() };
+    let value = match value.into_inner() {
+        DeValue::String(text) => Value::String(text.into_owned()),
+        DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(integer) => Value::Integer(integer),
+            // too large for an integer: a float says the same within rounding
+            Err(_) => Value::Number(integer.as_str().parse().unwrap_or(f64::NAN)),
+        },
+        DeValue::Float(float) => Value::Number(float.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(boolean) => Value::Boolean(boolean),
+        DeValue::Datetime(date) => Value::Date(date.to_string()),
+        DeValue::Array(array) => {
+            Value::Array(array.into_iter().map(|item| from_value(item, source)).collect())
+        }
+        DeValue::Table(table) => from_table(table, source),
+    };
+    Node { value, place }
+}
+
+/// Lays `KEY=VALUE` over the tree. KEY is dotted; `body.scale` reaches every body, `body.0.scale`
+/// the first. A VALUE that is no TOML is taken as a string, so that `integrator=euler` works.
+pub fn set(root: &mut Node, assignment: &str, source: usize) -> Result<Source, Problem> {
+    let told = Source { name: "--set".to_owned(), text: assignment.to_owned() };
+    let whole = Place { source, span: 0..assignment.len() };
+    let Some((key, text)) = assignment.split_once('=') else {
+        let message = "`--set` takes KEY=VALUE, for example --set dt=1e-4".to_owned();
+        return Err(Problem::new(whole, "", message));
+    };
+    let start = key.len() + 1;
+    let place = Place { source, span: start..assignment.len().max(start) };
+    let value = match DeValue::parse(text.trim()) {
+        Ok(value) => from_value(value, source).value,
+        Err(_) => Value::String(text.trim().to_owned()),
+    };
+    let path: Vec<&str> = key.trim().split('.').map(str::trim).collect();
+    if path.iter().any(|part| part.is_empty()) {
+        let message = format!("`{key}` is no key; write it as `dt` or `collision.collision_stiffness`");
+        return Err(Problem::new(Place { source, span: 0..key.len() }, "", message));
+    }
+    let node = Node { value: relocate(value, &place), place };
+    let key_place = Place { source, span: 0..key.len() };
+    assign(root, &path, &node, &key_place).map_err(|message| Problem::new(key_place, "", message))?;
+    Ok(told)
+}
+
+/// Everything inside an overriding value stands where the value as a whole stands.
+fn relocate(value: Value, place: &Place) -> Value {
+    let node = |node: Node| Node { value: relocate(node.value, place), place: place.clone() };
+    match value {
+        Value::Array(items) => Value::Array(items.into_iter().map(node).collect()),
+        Value::Table(entries) => Value::Table(
+            entries
+                .into_iter()
+                .map(|e| Entry { key: e.key, place: place.clone(), node: node(e.node) })
+                .collect(),
+        ),
+        other => other,
+    }
+}
+
+fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result<(), String> {
+    let Some((&part, rest)) = path.split_first() else {
+        *target = new.clone();
+        return Ok(());
+    };
+    match &mut target.value {
+        Value::Table(entries) => {
+            let at = match entries.iter().position(|entry| entry.key == part) {
+                Some(at) => at,
+                None => {
+                    let node = Node { value: Value::Table(Vec::new()), place: place.clone() };
+                    entries.push(Entry { key: part.to_owned(), place: place.clone(), node });
+                    entries.len() - 1
+                }
+            };
+            entries[at].place = if rest.is_empty() { place.clone() } else { entries[at].place.clone() };
+            assign(&mut entries[at].node, rest, new, place)
+        }
+        Value::Array(items) => match part.parse::<usize>() {
+            Ok(index) => {
+                let count = items.len();
+                match items.get_mut(index) {
+                    Some(item) => assign(item, rest, new, place),
+                    None => Err(format!("there is no number {index} here; there are {count}, counted from 0")),
+                }
+            }
+            Err(_) => items.iter_mut().try_for_each(|item| assign(item, path, new, place)),
+        },
+        other => Err(format!("`{part}` cannot be set inside {}", other.kind())),
+    }
+}

@@ -1,0 +1,204 @@
+//! A scene as TOML again, every default written out.
+
+use toml::{Table, Value};
+use tumble::{
+    DQuat, DVec3, Material, MaterialOverride, Primitive, Sampling, WallBox, WallPlane,
+};
+
+use super::description::{BodyScene, Geometry, MassScene, Scene};
+use super::geometry::{MASS_MODELS, ShapeScene};
+
+impl Scene {
+    /// The scene as TOML, every default written out, meshes by full path and hash. Reading it
+    /// again gives the same world.
+    pub fn to_toml(&self) -> String {
+        let mut top = Table::new();
+        if let Some(description) = &self.description {
+            put(&mut top, "description", description.clone());
+        }
+        put(&mut top, "duration", self.duration);
+        put(&mut top, "dt", self.dt);
+        put(&mut top, "integrator", self.integrator.name());
+        put(&mut top, "gravity", vector(self.gravity));
+        put(&mut top, "velocity_damping_stiffness", self.velocity_damping_stiffness);
+        put(&mut top, "collision", collision(&self.collision));
+        put(&mut top, "output", {
+            let mut output = Table::new();
+            put(&mut output, "interval", self.output.interval);
+            output
+        });
+        if let Some(own) = &self.walls_of_box {
+            let mut table = Table::new();
+            put(&mut table, "min", vector(own.walls.min));
+            put(&mut table, "max", vector(own.walls.max));
+            put(&mut table, "orientation", quaternion(own.walls.orientation));
+            let open = WallBox::FACES.iter().zip(own.walls.open).filter(|(_, open)| *open);
+            put(&mut table, "open", open.map(|(face, _)| Value::from(*face)).collect::<Vec<_>>());
+            put_material(&mut table, &own.material);
+            put(&mut top, "box", table);
+        }
+        let walls = self.walls.iter().map(|wall| {
+            let mut table = Table::new();
+            put(&mut table, "normal", vector(wall.plane.normal));
+            put(&mut table, "offset", wall.plane.offset);
+            put_material(&mut table, &wall.material);
+            Value::Table(table)
+        });
+        put_tables(&mut top, "wall", walls.collect());
+        put_tables(&mut top, "body", self.bodies.iter().map(|b| Value::Table(body(b))).collect());
+        let header = "# The scene as run, every default written out.\n\n";
+        format!("{header}{top}")
+    }
+
+    /// Every wall with its own material: the box's faces first, then the single ones.
+    pub fn all_walls(&self) -> Vec<(WallPlane, MaterialOverride)> {
+        let of_box = self.walls_of_box.iter().flat_map(|own| {
+            own.walls.planes().into_iter().map(|plane| (plane, own.material))
+        });
+        of_box.chain(self.walls.iter().map(|wall| (wall.plane, wall.material))).collect()
+    }
+
+    /// The names of all bodies, copies included, in the order of the world.
+    pub fn body_names(&self) -> Vec<String> {
+        self.bodies.iter().flat_map(BodyScene::names).collect()
+    }
+}
+
+impl BodyScene {
+    /// Its name, or the names of its copies: "ball 0", "ball 1", …
+    pub fn names(&self) -> Vec<String> {
+        match &self.copies {
+            None => vec![self.name.clone()],
+            Some(copies) => (0..copies.total()).map(|i| format!("{} {i}", self.name)).collect(),
+        }
+    }
+}
+
+fn body(body: &BodyScene) -> Table {
+    let mut table = Table::new();
+    put(&mut table, "name", body.name.clone());
+    match &body.geometry {
+        Geometry::Mesh { path, sha256, weld } => {
+            put(&mut table, "mesh", path.display().to_string());
+            put(&mut table, "mesh_sha256", sha256.clone());
+            if let Some(weld) = weld {
+                put(&mut table, "weld", *weld);
+            }
+        }
+        Geometry::Shape(shape) => put_shape(&mut table, shape),
+        Geometry::Particles(points) => {
+            put(&mut table, "particles", points.iter().map(|&p| vector(p)).collect::<Vec<_>>());
+        }
+    }
+    put(&mut table, "scale", body.scale);
+    match body.sampling {
+        Sampling::Vertices => put(&mut table, "sampling", "vertices"),
+        Sampling::Surface { spacing } => {
+            put(&mut table, "sampling", "surface");
+            put(&mut table, "spacing", spacing);
+        }
+        Sampling::Volume { spacing } => {
+            put(&mut table, "sampling", "volume");
+            put(&mut table, "spacing", spacing);
+        }
+    }
+    if let Some((name, _)) = MASS_MODELS.iter().find(|(_, model)| *model == body.mass_model) {
+        put(&mut table, "mass_model", *name);
+    }
+    match body.mass {
+        MassScene::Particle(mass) => put(&mut table, "particle_mass", mass),
+        MassScene::Total(mass) => put(&mut table, "mass", mass),
+        MassScene::Density(density) => put(&mut table, "density", density),
+    }
+    if let Some(position) = body.position {
+        put(&mut table, "position", vector(position));
+    }
+    put(&mut table, "orientation", quaternion(body.orientation));
+    put(&mut table, "initial_velocity", vector(body.initial_velocity));
+    put(&mut table, "initial_angular_velocity", vector(body.initial_angular_velocity));
+    put_material(&mut table, &body.material);
+    if let Some(copies) = &body.copies {
+        let mut of = Table::new();
+        put(&mut of, "count", copies.count.map(i64::from).to_vec());
+        put(&mut of, "spacing", vector(copies.spacing));
+        if let Some(seed) = copies.seed {
+            put(&mut of, "seed", seed as i64);
+        }
+        put(&mut table, "copies", of);
+    }
+    table
+}
+
+fn put_shape(table: &mut Table, shape: &ShapeScene) {
+    put(table, "shape", shape.name());
+    let ShapeScene::Primitive(primitive) = shape else { return };
+    let mut number = |key: &str, value: f64| put(table, key, value);
+    match *primitive {
+        Primitive::Sphere { radius, .. } => number("radius", radius),
+        Primitive::Box { size, .. } => put(table, "size", vector(size)),
+        Primitive::Cylinder { radius, height, .. } | Primitive::Capsule { radius, height, .. } => {
+            number("radius", radius);
+            number("height", height);
+        }
+        Primitive::Torus { radius, tube_radius, .. }
+        | Primitive::Knot { radius, tube_radius, .. } => {
+            number("radius", radius);
+            number("tube_radius", tube_radius);
+        }
+        Primitive::Dumbbell { radius, length, bar_radius, .. } => {
+            number("radius", radius);
+            number("length", length);
+            number("bar_radius", bar_radius);
+        }
+        Primitive::THandle { length, width, thickness, .. } => {
+            number("length", length);
+            number("width", width);
+            number("thickness", thickness);
+        }
+        Primitive::Tetrahedron { size } => number("size", size),
+    }
+    match *primitive {
+        Primitive::Sphere { subdivisions, .. } => {
+            put(table, "subdivisions", i64::from(subdivisions));
+        }
+        Primitive::Box { divisions, .. } | Primitive::THandle { divisions, .. } => {
+            put(table, "divisions", i64::from(divisions));
+        }
+        Primitive::Cylinder { segments, .. }
+        | Primitive::Capsule { segments, .. }
+        | Primitive::Torus { segments, .. }
+        | Primitive::Knot { segments, .. }
+        | Primitive::Dumbbell { segments, .. } => put(table, "segments", i64::from(segments)),
+        Primitive::Tetrahedron { .. } => {}
+    }
+}
+
+fn collision(material: &Material) -> Table {
+    let mut table = Table::new();
+    put(&mut table, "collision_stiffness", material.collision_stiffness);
+    table
+}
+
+fn put_material(table: &mut Table, material: &MaterialOverride) {
+    if let Some(k) = material.collision_stiffness {
+        put(table, "collision_stiffness", k);
+    }
+}
+
+fn put(table: &mut Table, key: &str, value: impl Into<Value>) {
+    table.insert(key.to_owned(), value.into());
+}
+
+fn put_tables(table: &mut Table, key: &str, tables: Vec<Value>) {
+    if !tables.is_empty() {
+        put(table, key, tables);
+    }
+}
+
+fn vector(v: DVec3) -> Value {
+    Value::from(v.to_array().to_vec())
+}
+
+fn quaternion(q: DQuat) -> Value {
+    Value::from(vec![q.w, q.x, q.y, q.z])
+}
