@@ -2,4 +2,7 @@
 
 mod shape;
 pub use glam::{DMat3, DQuat, DVec3};
-pub use shape::{Mesh, MeshError};
+pub use shape::{
+    Closedness, EdgeFault, FaultyEdge, Integrals, Mesh, MeshError, OpenMesh, Primitive,
+    PrimitiveError, SampleError, Sampling, ShellError,
+};
