@@ -56,7 +56,9 @@ pub use material::{Material, MaterialOverride};
 pub use model::{BodyModel, Integrator, Model};
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{
-    MassProperties, Mesh, MeshError, ParticleMoments, Particles, PrincipalAxes, Shape, ShapeError,
+    Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties, Mesh, MeshError,
+    OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError, PrincipalAxes, SampleError,
+    Sampling, Shape, ShapeError, ShellError,
 };
 pub use state::{BodyState, State, Tally};
 pub use wall::{WallBox, WallPlane};

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::mass::{MassProperties, PrincipalAxes, inertia_from_second_moment, outer};
-use super::{Mesh, Particles};
+use super::{Mesh, OpenMesh, Particles, SampleError, Sampling, ShellError};
 
 /// Particles and mass distribution of a body, shared by all bodies that look alike.
 ///
@@ -32,6 +32,18 @@ pub struct ParticleMoments {
     pub carry_mass: bool,
 }
 
+/// How the mass of a body is spread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MassModel {
+    /// Equally over its particles.
+    #[default]
+    Particles,
+    /// Evenly over its surface.
+    Shell,
+    /// Evenly over the volume that its closed mesh encloses.
+    Solid,
+}
+
 /// Why a shape cannot be made.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeError {
@@ -42,6 +54,12 @@ pub enum ShapeError {
         /// Index of the particle, from 0.
         particle: usize,
     },
+    /// The mesh cannot be sampled as asked.
+    Sample(SampleError),
+    /// A solid needs a closed mesh, and this one is not.
+    Open(OpenMesh),
+    /// A shell needs triangles with an area, and there are none.
+    Shell(ShellError),
     /// The particles are so far apart that their inertia overflows a double.
     TooLarge,
 }
@@ -56,6 +74,9 @@ impl std::fmt::Display for ShapeError {
                     "particle {particle} (counted from 0) has a coordinate that is not finite"
                 )
             }
+            Self::Sample(error) => error.fmt(f),
+            Self::Open(error) => error.fmt(f),
+            Self::Shell(error) => error.fmt(f),
             Self::TooLarge => write!(
                 f,
                 "the particles are so far apart that their inertia is not a finite number; scale the body down"
@@ -82,6 +103,25 @@ impl Shape {
     pub fn with_surface(places: &[DVec3], surface: Mesh) -> Result<Self, ShapeError> {
         let mass = MassProperties::of_particles(places, 1.0 / places.len().max(1) as f64);
         Self::with_mass(places, surface, mass.centre, mass.inertia, true)
+    }
+
+    /// A shape from a mesh: which of its points become particles, and how its mass is spread.
+    ///
+    /// # Errors
+    /// [`ShapeError`] when the mesh cannot be sampled so, or cannot carry its mass so.
+    pub fn of_mesh(
+        mesh: &Mesh,
+        sampling: Sampling,
+        mass_model: MassModel,
+    ) -> Result<Self, ShapeError> {
+        let places = mesh.sample(sampling).map_err(ShapeError::Sample)?;
+        let integrals = match mass_model {
+            MassModel::Particles => return Self::with_surface(&places, mesh.clone()),
+            MassModel::Shell => mesh.shell_integrals().map_err(ShapeError::Shell)?,
+            MassModel::Solid => mesh.solid_integrals().map_err(ShapeError::Open)?,
+        };
+        let gyration = integrals.inertia() * (1.0 / integrals.measure);
+        Self::of_distribution(&places, mesh.clone(), integrals.centre, gyration)
     }
 
     /// A shape whose mass is spread otherwise than over its particles: a shell, a solid.

@@ -1,11 +1,19 @@
 //! What a body is made of: its mesh, its particles, its mass properties.
 
 mod body_shape;
+mod closedness;
+mod integrals;
 mod mass;
 mod mesh;
 mod particles;
+mod primitive;
+mod sampling;
 
-pub use body_shape::{ParticleMoments, Shape, ShapeError};
+pub use body_shape::{MassModel, ParticleMoments, Shape, ShapeError};
+pub use closedness::{Closedness, EdgeFault, FaultyEdge};
+pub use integrals::{Integrals, OpenMesh, ShellError};
 pub use mass::{MassProperties, PrincipalAxes};
 pub use mesh::{Mesh, MeshError};
 pub use particles::Particles;
+pub use primitive::{Primitive, PrimitiveError};
+pub use sampling::{SampleError, Sampling};

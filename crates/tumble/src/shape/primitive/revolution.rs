@@ -1,0 +1,186 @@
+//! Surfaces of revolution with evenly spread vertices.
+//!
+//! A profile, a chain of rings, turns about the y axis. Each ring has as many vertices as fit its
+//! circumference at the shape's spacing, in a multiple of six, so that no ring near the axis is crowded.
+//! A band of triangles closes the gap between two rings of any counts. The sixfold symmetry keeps centres of
+//! mass on the axis and principal axes along it.
+
+use super::PrimitiveError;
+use super::check::{MAX_VERTICES, affordable};
+use crate::shape::Mesh;
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A point of the profile: distance from the axis, and height along it (m).
+type Point = [f64; 2];
+
+/// The spacing (m) that puts `segments` vertices, rounded to a multiple of six, around a circle.
+fn spacing_of(segments: u32, radius: f64) -> f64 {
+    let sixths = (f64::from(segments) / 6.0).round().max(1.0);
+    TAU * radius / (6.0 * sixths)
+}
+
+/// How many parts of about `spacing` a length has, at least one.
+fn parts(shape: &'static str, length: f64, spacing: f64) -> Result<u32, PrimitiveError> {
+    let parts = (length / spacing).round().max(1.0);
+    affordable(shape, parts)?;
+    Ok(parts as u32)
+}
+
+/// How many vertices a ring has; one on the axis.
+fn ring_count(radius: f64, spacing: f64) -> u32 {
+    if radius == 0.0 {
+        return 1;
+    }
+    let sixths = (TAU * radius / (6.0 * spacing)).round().max(1.0);
+    6 * sixths.min(MAX_VERTICES) as u32
+}
+
+/// Turns a profile that runs from bottom to top on its outside about the y axis; a profile that does not
+/// close must begin and end on the axis.
+fn revolve(
+    shape: &'static str,
+    profile: &[Point],
+    spacing: f64,
+    closes: bool,
+) -> Result<Mesh, PrimitiveError> {
+    let counts: Vec<u32> = profile.iter().map(|&[r, _]| ring_count(r, spacing)).collect();
+    affordable(shape, counts.iter().map(|&n| f64::from(n)).sum())?;
+
+    let mut mesh = Mesh::default();
+    let mut starts = Vec::with_capacity(profile.len());
+    for (&[r, y], &count) in profile.iter().zip(&counts) {
+        starts.push(mesh.vertices.len() as u32);
+        for k in 0..count {
+            // from z towards x is counter-clockwise about +y
+            let (sin, cos) = libm::sincos(TAU * f64::from(k) / f64::from(count));
+            mesh.vertices.push(DVec3::new(r * sin, y, r * cos));
+        }
+    }
+
+    let last = profile.len() - 1;
+    for lower in 0..last {
+        add_band(&mut mesh, [lower, lower + 1].map(|i| (starts[i], counts[i])));
+    }
+    if closes {
+        add_band(&mut mesh, [last, 0].map(|i| (starts[i], counts[i])));
+    }
+    Ok(mesh)
+}
+
+/// Fills the gap between two rings, given by first vertex and count.
+///
+/// At each triangle the ring moves on whose next edge has its middle first; that makes the band symmetric
+/// about every plane of symmetry that the two rings share.
+fn add_band(mesh: &mut Mesh, [(a, a_count), (b, b_count)]: [(u32, u32); 2]) {
+    // a ring of one vertex, on the axis, never moves on
+    let edges = |count: u32| if count == 1 { 0 } else { count };
+    let (a_edges, b_edges) = (edges(a_count), edges(b_count));
+    let (mut i, mut j) = (0, 0);
+    while i < a_edges || j < b_edges {
+        let at = [a + i % a_count, b + j % b_count];
+        let a_middle = u64::from(2 * i + 1) * u64::from(b_count);
+        let b_middle = u64::from(2 * j + 1) * u64::from(a_count);
+        if j == b_edges || (i < a_edges && a_middle <= b_middle) {
+            i += 1;
+            mesh.triangles.push([at[0], a + i % a_count, at[1]]);
+        } else {
+            j += 1;
+            mesh.triangles.push([at[0], b + j % b_count, at[1]]);
+        }
+    }
+}
+
+/// Completes a profile whose lower half is given: a straight line up to its mirror image.
+fn mirrored(
+    shape: &'static str,
+    mut lower: Vec<Point>,
+    spacing: f64,
+) -> Result<Vec<Point>, PrimitiveError> {
+    let half = lower.len();
+    let [r, y] = lower[half - 1];
+    let n = parts(shape, -2.0 * y, spacing)?;
+    lower.extend((1..n).map(|i| [r, y * (f64::from(n) - 2.0 * f64::from(i)) / f64::from(n)]));
+    for i in (0..half).rev() {
+        let [r, y] = lower[i];
+        lower.push([r, -y]);
+    }
+    Ok(lower)
+}
+
+/// The lower end of a ball around height `centre`: from its pole to the angle `end` away from it.
+fn ball(
+    shape: &'static str,
+    centre: f64,
+    radius: f64,
+    end: f64,
+    spacing: f64,
+) -> Result<Vec<Point>, PrimitiveError> {
+    let n = parts(shape, end * radius, spacing)?;
+    let mut points = vec![[0.0, centre - radius]];
+    points.extend((1..=n).map(|i| {
+        let (sin, cos) = libm::sincos(end * f64::from(i) / f64::from(n));
+        [radius * sin, centre - radius * cos]
+    }));
+    Ok(points)
+}
+
+/// A cylinder around y.
+pub(super) fn cylinder(radius: f64, height: f64, segments: u32) -> Result<Mesh, PrimitiveError> {
+    let shape = "cylinder";
+    let spacing = spacing_of(segments, radius);
+    let n = parts(shape, radius, spacing)?;
+    let cap =
+        (0..=n).map(|i| [radius * f64::from(i) / f64::from(n), -0.5 * height]).collect::<Vec<_>>();
+    revolve(shape, &mirrored(shape, cap, spacing)?, spacing, false)
+}
+
+/// A cylinder around y, of length `height`, with half balls at its ends.
+pub(super) fn capsule(radius: f64, height: f64, segments: u32) -> Result<Mesh, PrimitiveError> {
+    let shape = "capsule";
+    let spacing = spacing_of(segments, radius);
+    let mut cap = ball(shape, -0.5 * height, radius, FRAC_PI_2, spacing)?;
+    if let Some(rim) = cap.last_mut() {
+        // the cosine of π/2 is not zero in doubles
+        *rim = [radius, -0.5 * height];
+    }
+    revolve(shape, &mirrored(shape, cap, spacing)?, spacing, false)
+}
+
+/// A ring around y.
+pub(super) fn torus(radius: f64, tube_radius: f64, segments: u32) -> Result<Mesh, PrimitiveError> {
+    let shape = "torus";
+    let spacing = spacing_of(segments, radius + tube_radius);
+    let n = parts(shape, TAU * tube_radius, spacing)?.max(6);
+    let profile: Vec<Point> = (0..n)
+        .map(|i| {
+            let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(n));
+            [radius + tube_radius * cos, tube_radius * sin]
+        })
+        .collect();
+    revolve(shape, &profile, spacing, true)
+}
+
+/// Two balls on a bar along x.
+pub(super) fn dumbbell(
+    radius: f64,
+    length: f64,
+    bar_radius: f64,
+    segments: u32,
+) -> Result<Mesh, PrimitiveError> {
+    let shape = "dumbbell";
+    let spacing = spacing_of(segments, radius);
+    // from the outer pole to where the ball meets the bar
+    let end = PI - libm::asin(bar_radius / radius);
+    let mut cap = ball(shape, -0.5 * length, radius, end, spacing)?;
+    if let Some(rim) = cap.last_mut() {
+        let reach = ((radius - bar_radius) * (radius + bar_radius)).sqrt();
+        *rim = [bar_radius, reach - 0.5 * length];
+    }
+    let mut mesh = revolve(shape, &mirrored(shape, cap, spacing)?, spacing, false)?;
+    // a cyclic change of axes turns y into x and keeps the winding
+    for v in &mut mesh.vertices {
+        *v = DVec3::new(v.y, v.z, v.x);
+    }
+    Ok(mesh)
+}
