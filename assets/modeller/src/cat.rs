@@ -10,6 +10,7 @@ pub fn solid() -> Solid {
     let mut parts = trunk();
     parts.extend(hind_legs());
     parts.extend(forelegs());
+    parts.extend(toes());
     parts.push(tail());
     parts.extend(head());
     parts.extend(ears());
@@ -17,13 +18,25 @@ pub fn solid() -> Solid {
     Solid { parts, ground_blend: 0.04 }
 }
 
-/// The wanted edge length: finer on the face and the paws than on the trunk.
+/// The wanted edge length on the trunk.
+const COARSE: f64 = 0.057;
+
+/// Where the mesh is finer: centre, radius of full effect, wanted edge length.
+const FINE: [([f64; 3], f64, f64); 4] = [
+    ([0.0, 1.50, 0.55], 0.30, 0.029),
+    ([0.25, 1.85, 0.25], 0.25, 0.040),
+    ([0.155, 0.05, 0.56], 0.10, 0.027),
+    ([0.41, 0.06, 0.45], 0.10, 0.027),
+];
+
+/// The wanted edge length: finer on the face, the ears and the paws than on the trunk.
 pub fn spacing(point: DVec3) -> f64 {
-    const TRUNK: f64 = 0.060;
-    const FACE: f64 = 0.036;
-    // 1 around the face, fading to 0 over the neck
-    let near = 1.0 - ((point.distance(DVec3::new(0.0, 1.52, 0.45)) - 0.35) / 0.5).clamp(0.0, 1.0);
-    TRUNK + near * near * (3.0 - 2.0 * near) * (FACE - TRUNK)
+    let folded = DVec3::new(libm::fabs(point.x), point.y, point.z);
+    FINE.iter().fold(COARSE, |size, &(centre, radius, fine)| {
+        // lengths grow by an eighth of the way walked: neighbours differ little
+        let away = (folded.distance(centre.into()) - radius).max(0.0);
+        size.min(fine + away / 8.0)
+    })
 }
 
 fn trunk() -> Vec<Part> {
@@ -50,7 +63,7 @@ fn forelegs() -> Vec<Part> {
         twins(
             "foreleg",
             path(&[[0.18, 0.78, 0.26, 0.12], [0.155, 0.40, 0.35, 0.092], [0.15, 0.08, 0.38, 0.082]]),
-            0.06,
+            0.09,
         ),
         twins("fore paw", egg([0.155, 0.06, 0.45], [0.105, 0.085, 0.145], 0.0), 0.04),
     ]
@@ -64,9 +77,9 @@ fn tail() -> Part {
         [0.55, 0.08, -0.05, 0.095],
         [0.56, 0.08, 0.28, 0.09],
         [0.48, 0.08, 0.50, 0.08],
-        [0.37, 0.08, 0.60, 0.06],
+        [0.37, 0.075, 0.61, 0.055],
     ];
-    part("tail", curve(&knots), 0.03)
+    part("tail", curve(&knots), 0.06)
 }
 
 fn head() -> Vec<Part> {
@@ -78,20 +91,31 @@ fn head() -> Vec<Part> {
 
 fn ears() -> Vec<Part> {
     vec![
-        twins("ear back", path(&[[0.22, 1.70, 0.20, 0.13], [0.31, 2.02, 0.21, 0.03]]), 0.08),
-        twins("ear", plate([[0.09, 1.76, 0.30], [0.37, 1.60, 0.20], [0.315, 2.04, 0.23]], 0.035), 0.06),
-        carve("ear cup", plate([[0.16, 1.81, 0.37], [0.33, 1.74, 0.32], [0.30, 1.93, 0.295]], 0.035), 0.03),
+        twins("ear back", path(&[[0.22, 1.70, 0.20, 0.13], [0.325, 2.02, 0.21, 0.03]]), 0.08),
+        twins("ear", plate([[0.09, 1.77, 0.30], [0.315, 1.68, 0.20], [0.335, 2.05, 0.23]], 0.032), 0.06),
+        carve("ear cup", plate([[0.17, 1.83, 0.38], [0.31, 1.77, 0.33], [0.315, 1.94, 0.29]], 0.042), 0.03),
     ]
 }
 
 fn face() -> Vec<Part> {
     vec![
-        twins("muzzle", egg([0.08, 1.415, 0.59], [0.105, 0.08, 0.11], 0.0), 0.06),
-        part("chin", egg([0.0, 1.35, 0.57], [0.075, 0.06, 0.08], 0.0), 0.04),
-        part("bridge", path(&[[0.0, 1.64, 0.54, 0.07], [0.0, 1.49, 0.64, 0.05]]), 0.08),
-        carve("eye socket", egg([0.17, 1.565, 0.64], [0.095, 0.075, 0.08], 0.0), 0.05),
-        twins("eye", egg([0.165, 1.565, 0.555], [0.08, 0.065, 0.06], 0.0), 0.012),
+        part("chin", egg([0.0, 1.345, 0.575], [0.075, 0.06, 0.08], 0.0), 0.04),
+        twins("muzzle", egg([0.083, 1.415, 0.60], [0.105, 0.082, 0.105], 0.0), 0.035),
+        part("bridge", path(&[[0.0, 1.66, 0.54, 0.08], [0.0, 1.50, 0.645, 0.05]]), 0.08),
+        carve("eye socket", egg([0.18, 1.575, 0.64], [0.115, 0.09, 0.10], 0.0), 0.04),
+        twins("eye", egg([0.175, 1.575, 0.53], [0.095, 0.072, 0.08], 0.0), 0.01),
         part("nose", egg([0.0, 1.485, 0.685], [0.055, 0.035, 0.035], 0.0), 0.02),
+    ]
+}
+
+fn toes() -> Vec<Part> {
+    // upright cuts from the front, on either side of the middle toes
+    let cleft = |x: f64, z: f64| plate([[x, -0.1, z], [x, 0.16, z - 0.04], [x, 0.2, z + 0.2]], 0.012);
+    vec![
+        carve("inner fore cleft", cleft(0.121, 0.575), 0.02),
+        carve("outer fore cleft", cleft(0.189, 0.575), 0.02),
+        carve("inner hind cleft", cleft(0.378, 0.461), 0.02),
+        carve("outer hind cleft", cleft(0.442, 0.461), 0.02),
     ]
 }
 

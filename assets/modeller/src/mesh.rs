@@ -26,6 +26,12 @@ impl Mesh {
         (b - a).cross(c - a)
     }
 
+    /// The length of an edge.
+    #[cfg(test)]
+    pub fn length(&self, edge: &Edge) -> f64 {
+        self.points[edge.ends[0]].distance(self.points[edge.ends[1]])
+    }
+
     /// All edges, sorted by their ends; an error names the first edge that is not shared by
     /// exactly two triangles in opposite directions.
     pub fn edges(&self) -> Result<Vec<Edge>, String> {
@@ -76,7 +82,8 @@ impl Mesh {
         corners.map(|[a, b, c]| a.dot(b.cross(c))).sum::<f64>() / 6.0
     }
 
-    /// The smallest angle of a triangle, in degrees.
+    /// The sharpest corner of a triangle, in degrees.
+    #[cfg(test)]
     pub fn sharpest_angle(&self, [a, b, c]: [usize; 3]) -> f64 {
         let doubled = self.area_vector([a, b, c]).length();
         let corner = |apex: usize, from: usize, to: usize| {
