@@ -14,6 +14,7 @@ mod tests;
 
 use glam::DVec3;
 use mesh::Mesh;
+use solid::Solid;
 use std::process::ExitCode;
 
 const USAGE: &str = "usage: tumble-modeller [--out FILE] [--check]
@@ -47,8 +48,9 @@ fn run(mut arguments: impl Iterator<Item = String>) -> Result<String, String> {
         }
     }
 
-    let mesh = model_cat()?;
-    let text = obj::write(&mesh);
+    let solid = cat::solid();
+    let mesh = model(&solid)?;
+    let text = obj::write(&mesh, &solid);
     let counts = format!(
         "{} vertices, {} triangles, volume {:.4}",
         mesh.points.len(),
@@ -66,12 +68,11 @@ fn run(mut arguments: impl Iterator<Item = String>) -> Result<String, String> {
     Ok(format!("{out}: {counts}"))
 }
 
-/// The finished cat: two units tall, centred on its bounding box.
-fn model_cat() -> Result<Mesh, String> {
-    let solid = cat::solid();
+/// The finished mesh of the cat: two units tall, centred on its bounding box.
+fn model(solid: &Solid) -> Result<Mesh, String> {
     let (low, high) = (DVec3::new(-1.0, -0.1, -1.1), DVec3::new(1.0, 2.3, 1.1));
-    let mut mesh = polygonise::polygonise(&solid, low, high, 0.03);
-    remesh::remesh(&mut mesh, &solid, cat::spacing)?;
+    let mut mesh = polygonise::polygonise(solid, low, high, 0.03);
+    remesh::remesh(&mut mesh, solid, cat::spacing)?;
     mesh.fit(2.0);
     Ok(mesh)
 }

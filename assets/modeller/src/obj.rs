@@ -1,17 +1,17 @@
 //! Wavefront OBJ text.
 
 use crate::mesh::Mesh;
+use crate::solid::Solid;
 use std::fmt::Write;
 
 const HEADER: &str = "# a sitting cat: closed surface, y up, facing +z, 2 units tall, centred
 # modelled by assets/modeller: cargo run -p tumble-modeller
-# licence: MIT OR Apache-2.0
-o cat
-";
+# licence: MIT OR Apache-2.0";
 
-/// The mesh as OBJ text, six decimals a coordinate.
-pub fn write(mesh: &Mesh) -> String {
-    let mut text = HEADER.to_string();
+/// The mesh as OBJ text, at most six decimals a coordinate; the header names the model's parts.
+pub fn write(mesh: &Mesh, solid: &Solid) -> String {
+    let names: Vec<&str> = solid.parts.iter().map(|part| part.name).collect();
+    let mut text = format!("{HEADER}\n# parts: {}\no cat\n", names.join(", "));
     for point in &mesh.points {
         let [x, y, z] = point.to_array().map(decimal);
         // writing to a string cannot fail

@@ -79,7 +79,8 @@ fn cut(
     let fan: Vec<[usize; 3]> = (2..ring.len()).map(|i| [ring[0], ring[i - 1], ring[i]]).collect();
     let area: DVec3 = fan.iter().map(|&triangle| mesh.area_vector(triangle)).sum();
     let turned = area.dot(outward) < 0.0;
-    mesh.triangles.extend(fan.into_iter().map(|[a, b, c]| if turned { [a, c, b] } else { [a, b, c] }));
+    mesh.triangles
+        .extend(fan.into_iter().map(|[a, b, c]| if turned { [a, c, b] } else { [a, b, c] }));
 }
 
 impl Lattice {

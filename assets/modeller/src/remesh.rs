@@ -79,8 +79,10 @@ fn collapse(mesh: &mut Mesh, spacing: Spacing) -> Result<usize, String> {
             continue;
         }
         // only the two triangles of the edge may connect both ends, else the surface would pinch
-        let shared: Vec<usize> =
-            neighbours(mesh, &rings, a).intersection(&neighbours(mesh, &rings, b)).copied().collect();
+        let shared: Vec<usize> = neighbours(mesh, &rings, a)
+            .intersection(&neighbours(mesh, &rings, b))
+            .copied()
+            .collect();
         if shared.len() != 2 || shared.iter().any(|&corner| rings[corner].len() < 5) {
             continue;
         }
@@ -95,7 +97,9 @@ fn collapse(mesh: &mut Mesh, spacing: Spacing) -> Result<usize, String> {
         }
         edge.sides.iter().for_each(|&side| dead[side] = true);
         // the corners that lost a triangle are touched as well
-        around().chain(shared.iter().flat_map(|&c| rings[c].iter().copied())).for_each(|side| touched[side] = true);
+        around()
+            .chain(shared.iter().flat_map(|&c| rings[c].iter().copied()))
+            .for_each(|side| touched[side] = true);
     }
     sweep(mesh, &dead);
     Ok(dead.iter().filter(|&&dead| dead).count() / 2)
@@ -104,7 +108,8 @@ fn collapse(mesh: &mut Mesh, spacing: Spacing) -> Result<usize, String> {
 /// Whether a triangle stays sound when its corner among `ends` moves to `middle`.
 fn survives(mesh: &Mesh, side: usize, ends: [usize; 2], middle: DVec3, spacing: Spacing) -> bool {
     let old = mesh.triangles[side];
-    let [a, b, c] = old.map(|corner| if ends.contains(&corner) { middle } else { mesh.points[corner] });
+    let [a, b, c] =
+        old.map(|corner| if ends.contains(&corner) { middle } else { mesh.points[corner] });
     let before = mesh.area_vector(old).normalize_or_zero();
     let after = (b - a).cross(c - a).normalize_or_zero();
     let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -135,7 +140,8 @@ fn flip(mesh: &mut Mesh) -> Result<(), String> {
     let mut valence: Vec<usize> = mesh.rings().iter().map(Vec::len).collect();
     let mut touched = vec![false; mesh.triangles.len()];
     for Edge { ends: [a, b], sides: [with, against] } in edges {
-        let opposite = |side: usize| mesh.triangles[side].iter().copied().find(|&c| c != a && c != b);
+        let opposite =
+            |side: usize| mesh.triangles[side].iter().copied().find(|&c| c != a && c != b);
         let (Some(c), Some(d)) = (opposite(with), opposite(against)) else { continue };
         let across = [c.min(d), c.max(d)];
         let free = !touched[with] && !touched[against] && !known.contains(&across);

@@ -27,7 +27,7 @@ pub enum Act {
 
 /// A named primitive with the way it meets the rest.
 pub struct Part {
-    /// for the reader of the table; also printed by nothing
+    /// for the reader of the table and of the written file
     pub name: &'static str,
     /// the primitive
     pub shape: Shape,
