@@ -1,0 +1,31 @@
+//! Wavefront OBJ text.
+
+use crate::mesh::Mesh;
+use crate::solid::Solid;
+use std::fmt::Write;
+
+const HEADER: &str = "# a sitting cat: closed surface, y up, facing +z, 2 units tall, centred
+# modelled by assets/modeller: cargo run -p tumble-modeller
+# licence: MIT OR Apache-2.0";
+
+/// The mesh as OBJ text, at most six decimals a coordinate; the header names the model's parts.
+pub fn write(mesh: &Mesh, solid: &Solid) -> String {
+    let names: Vec<&str> = solid.parts.iter().map(|part| part.name).collect();
+    let mut text = format!("{HEADER}\n# parts: {}\no cat\n", names.join(", "));
+    for point in &mesh.points {
+        let [x, y, z] = point.to_array().map(decimal);
+        // writing to a string cannot fail
+        let _ = writeln!(text, "v {x} {y} {z}");
+    }
+    for [a, b, c] in &mesh.triangles {
+        let _ = writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1);
+    }
+    text
+}
+
+/// Six decimals, without trailing zeros or a signed zero.
+fn decimal(value: f64) -> String {
+    let fixed = format!("{value:.6}");
+    let short = fixed.trim_end_matches('0').trim_end_matches('.');
+    if short == "-0" { "0".to_string() } else { short.to_string() }
+}
