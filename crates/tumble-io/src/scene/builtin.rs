@@ -20,7 +20,7 @@ macro_rules! builtin {
 
 /// All built-in scenes, in the order in which they teach.
 pub const BUILTIN: [Builtin; 9] = builtin![
-    "task1", "task2", "cat1", "cat2", "top", "racket", "coin", "slope", "many",
+    "task1", "task2", "task1-cat", "task2-cat", "top", "racket", "coin", "slope", "many",
 ];
 
 /// The built-in scene of that name.

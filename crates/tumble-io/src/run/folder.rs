@@ -1,0 +1,133 @@
+//! The folder of a run: made once, never written over by accident.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tumble::StepError;
+
+/// The files that a run writes. Nothing else in the folder is ever touched.
+const FILES: [&str; 6] =
+    ["scene.toml", "trajectory.csv", "energy.csv", "summary.json", "energy.svg", "motion.png"];
+
+/// Why a run cannot start or go on.
+#[derive(Debug)]
+pub enum RunError {
+    /// The folder already holds a run.
+    Taken(PathBuf),
+    /// The folder cannot be made.
+    Folder(PathBuf, io::Error),
+    /// A file cannot be written.
+    Write(PathBuf, io::Error),
+    /// A picture cannot be drawn.
+    Draw(PathBuf, String),
+    /// The simulation failed.
+    Step(StepError),
+}
+
+impl std::fmt::Display for RunError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Taken(path) => write!(
+                f,
+                "{} already holds a run; name another folder with --out, or write over it with --force",
+                path.display()
+            ),
+            Self::Folder(path, error) => write!(
+                f,
+                "cannot make the folder {}: {error}; name a folder that you may write to with --out",
+                path.display()
+            ),
+            Self::Write(path, error) => {
+                let advice = match error.kind() {
+                    io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+                        "free some space, or name a folder on another disk with --out; \
+                         a larger output.interval writes less"
+                    }
+                    _ => "name a folder that you may write to with --out",
+                };
+                write!(f, "cannot write {}: {error}; {advice}", path.display())
+            }
+            Self::Draw(path, error) => write!(f, "cannot draw {}: {error}", path.display()),
+            Self::Step(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for RunError {}
+
+/// A folder that holds nothing of a run yet.
+#[derive(Clone, Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+}
+
+impl RunFolder {
+    /// Makes the folder at `path`, or takes it over when it holds no run. With `force` an old
+    /// run's files are removed first.
+    ///
+    /// # Errors
+    /// [`RunError::Taken`] or [`RunError::Folder`].
+    pub fn create(path: &Path, force: bool) -> Result<Self, RunError> {
+        let folder = Self { path: path.to_owned() };
+        fs::create_dir_all(path).map_err(|error| RunError::Folder(path.to_owned(), error))?;
+        for name in FILES {
+            let file = folder.file(name);
+            if !file.exists() {
+                continue;
+            }
+            if !force {
+                return Err(RunError::Taken(path.to_owned()));
+            }
+            fs::remove_file(&file).map_err(|error| RunError::Write(file, error))?;
+        }
+        Ok(folder)
+    }
+
+    /// Makes the first of `parent/name`, `parent/name-2`, `parent/name-3`, … that holds no run.
+    ///
+    /// # Errors
+    /// [`RunError::Folder`].
+    pub fn create_next(parent: &Path, name: &str) -> Result<Self, RunError> {
+        let mut number = 1u32;
+        loop {
+            let name = if number == 1 { name.to_owned() } else { format!("{name}-{number}") };
+            match Self::create(&parent.join(name), false) {
+                Err(RunError::Taken(_)) => number += 1,
+                result => return result,
+            }
+        }
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The full path of one of its files.
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// Opens one of its files for writing, line by line.
+    pub(super) fn open(&self, name: &str) -> Result<BufWriter<File>, RunError> {
+        let path = self.file(name);
+        let file = File::create(&path).map_err(|error| RunError::Write(path, error))?;
+        Ok(BufWriter::with_capacity(1 << 16, file))
+    }
+
+    /// Writes one of its files whole: first under another name, then renamed, so that a file of
+    /// that name is never half of itself.
+    pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<(), RunError> {
+        let path = self.file(name);
+        let temporary = self.file(&format!(".{name}.partial"));
+        let written = File::create(&temporary)
+            .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+            .and_then(|()| fs::rename(&temporary, &path));
+        written.map_err(|error| {
+            // best effort: the first error is the one to tell
+            let _ = fs::remove_file(&temporary);
+            RunError::Write(path, error)
+        })
+    }
+}
