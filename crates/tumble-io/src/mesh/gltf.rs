@@ -1,0 +1,338 @@
+//! glTF 2, as text with side files or data URIs (`.gltf`) and as one binary file (`.glb`).
+//!
+//! Read here, on `serde_json`, and not by the crate `gltf` (1.4): its validation panics on a file
+//! whose POSITION refers to a missing accessor, its readers panic on others, and it keeps node transforms at single
+//! precision.
+//!
+//! Read: the triangles, strips and fans of all nodes of the scene (or of the first scene; without
+//! scenes of all nodes; without nodes all meshes as they stand), moved by the nodes' transforms in f64.
+//! An instance of a mesh becomes vertices of its own. Points and lines, materials and animations are passed over.
+//! Morph targets count as unweighted. A skinned mesh is taken in its base pose, that is, as its
+//! vertices are stored: by the specification, the transform of its node does not apply to it.
+
+mod data;
+mod schema;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use super::polygon::Faces;
+use super::text::check_text;
+use super::{Parsed, Place, ReadError};
+use data::{Buffers, error, get};
+use schema::{Document, Node, Primitive};
+
+/// The largest JSON part. Beyond it, the few bytes of an entry would grow to gigabytes of entries.
+const MAX_JSON: usize = 128 << 20;
+/// Extensions that change where vertices are or what they mean, and are understood.
+const UNDERSTOOD: [&str; 1] = ["KHR_mesh_quantization"];
+/// Extensions of these families leave the geometry as it is.
+const HARMLESS: [&str; 6] =
+    ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp", "MSFT_texture_"];
+
+/// Reads the bytes of a glTF file; `folder` is where its side files lie.
+pub(super) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Parsed, ReadError> {
+    let (json, binary_chunk) = split(bytes)?;
+    if json.len() > MAX_JSON {
+        return Err(error("the JSON part has more than 128 MiB; keep the data in a .bin or .glb"));
+    }
+    let document: Document<'_> = serde_json::from_slice(json).map_err(|e| json_error(&e, bytes))?;
+    check_version(&document)?;
+
+    let buffers = Buffers::new(&document, binary_chunk, folder);
+    let mut scene = Scene::new(&document, buffers, bytes.len());
+    scene.walk()?;
+    scene.finish()
+}
+
+/// The JSON part and the binary part of a file.
+fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
+    if !bytes.starts_with(b"glTF") {
+        check_text(bytes, "a glTF that does not begin with `glTF`")?;
+        return Ok((bytes, None));
+    }
+    let at = |byte: usize, message: String| ReadError::new(Some(Place::Byte(byte as u64)), message);
+    let word = |byte: usize| {
+        let bytes = bytes.get(byte..).and_then(|rest| rest.first_chunk());
+        bytes.map(|b| u32::from_le_bytes(*b)).ok_or_else(|| {
+            at(byte, "the file ends within a header of the .glb: it is truncated".to_owned())
+        })
+    };
+    let (version, length) = (word(4)?, word(8)? as usize);
+    if version != 2 {
+        return Err(at(4, format!("the .glb has version {version}; only version 2 is read")));
+    }
+    let Some(bytes) = bytes.get(..length) else {
+        let found = bytes.len();
+        let message = format!("the .glb promises {length} bytes, but has {found}: it is truncated");
+        return Err(at(8, message));
+    };
+
+    // the first chunk is JSON, the second may be binary
+    let chunk = |start: usize| {
+        let (length, kind) = (word(start)? as usize, word(start + 4)?.to_le_bytes());
+        match bytes.get(start + 8..).and_then(|rest| rest.get(..length)) {
+            Some(content) => Ok((kind, content)),
+            None => Err(at(start, format!("a chunk promises {length} bytes, more than are left"))),
+        }
+    };
+    let (kind, json) = chunk(12)?;
+    if &kind != b"JSON" {
+        return Err(at(16, "the first chunk of the .glb must be JSON".to_owned()));
+    }
+    let after = 20 + json.len().next_multiple_of(4);
+    if after >= bytes.len() {
+        return Ok((json, None));
+    }
+    let (kind, content) = chunk(after)?;
+    Ok((json, (&kind == b"BIN\0").then_some(content)))
+}
+
+fn json_error(e: &serde_json::Error, bytes: &[u8]) -> ReadError {
+    let message = format!("this is no glTF: {e}");
+    match bytes.starts_with(b"glTF") {
+        true => ReadError::new(Some(Place::Byte(20)), message),
+        false => {
+            ReadError::new(Some(Place::Line { line: e.line(), column: Some(e.column()) }), message)
+        }
+    }
+}
+
+fn check_version(document: &Document<'_>) -> Result<(), ReadError> {
+    let version = &document.asset.version;
+    if version != "2" && !version.starts_with("2.") {
+        return Err(error(format!(
+            "the file is glTF {version:.20}; only glTF 2 is read: convert it first"
+        )));
+    }
+    let unknown = document.extensions_required.iter().find(|name| {
+        !UNDERSTOOD.contains(&name.as_str())
+            && !HARMLESS.iter().any(|family| name.starts_with(family))
+    });
+    match unknown {
+        None => Ok(()),
+        Some(name) => Err(error(format!(
+            "the file requires the extension {name:.80}, which is not supported: export it without (compression)"
+        ))),
+    }
+}
+
+/// Collects the meshes of the nodes.
+struct Scene<'a> {
+    document: &'a Document<'a>,
+    buffers: Buffers<'a>,
+    file_length: usize,
+    vertices: Vec<DVec3>,
+    faces: Faces,
+    object_count: usize,
+    /// Vertices, indices and primitives so far, all instances counted.
+    work: usize,
+}
+
+impl<'a> Scene<'a> {
+    fn new(document: &'a Document<'a>, buffers: Buffers<'a>, file_length: usize) -> Self {
+        Self {
+            document,
+            buffers,
+            file_length,
+            vertices: Vec::new(),
+            faces: Faces::default(),
+            object_count: 0,
+            work: 0,
+        }
+    }
+
+    /// Visits all nodes, parents first, in the file's order.
+    fn walk(&mut self) -> Result<(), ReadError> {
+        let document = self.document;
+        if document.nodes.is_empty() {
+            return (0..document.meshes.len())
+                .try_for_each(|mesh| self.place(mesh, DAffine3::IDENTITY));
+        }
+        let mut seen = vec![false; document.nodes.len()];
+        let mut stack: Vec<(usize, DAffine3)> = Vec::new();
+        push(&mut stack, &mut seen, &self.roots()?, DAffine3::IDENTITY)?;
+        while let Some((index, parent)) = stack.pop() {
+            let node = get(&document.nodes, index, "node")?;
+            let transform = parent * local_transform(node, index)?;
+            match (node.mesh, node.skin) {
+                (Some(mesh), None) => self.place(mesh, transform)?,
+                (Some(mesh), Some(_)) => self.place(mesh, DAffine3::IDENTITY)?,
+                (None, _) => {}
+            }
+            push(&mut stack, &mut seen, &node.children, transform)?;
+        }
+        Ok(())
+    }
+
+    fn roots(&self) -> Result<Vec<usize>, ReadError> {
+        let document = self.document;
+        if !document.scenes.is_empty() {
+            let scene = document.scene.unwrap_or(0);
+            return Ok(get(&document.scenes, scene, "scene")?.nodes.clone());
+        }
+        let mut is_child = vec![false; document.nodes.len()];
+        for &child in document.nodes.iter().flat_map(|node| &node.children) {
+            get(&document.nodes, child, "node")?;
+            is_child[child] = true;
+        }
+        Ok((0..is_child.len()).filter(|&node| !is_child[node]).collect())
+    }
+
+    /// Adds a mesh where its node puts it.
+    fn place(&mut self, mesh: usize, transform: DAffine3) -> Result<(), ReadError> {
+        let mesh = get(&self.document.meshes, mesh, "mesh")?;
+        self.object_count += 1;
+        // primitives may share their vertices
+        let mut first_of = BTreeMap::new();
+        for primitive in &mesh.primitives {
+            self.spend(1)?;
+            let Some(position) = primitive.attributes.position else { continue };
+            if !(4..=6).contains(&primitive.mode) {
+                continue;
+            }
+            let first = match first_of.get(&position) {
+                Some(&first) => first,
+                None => self.place_vertices(position, transform)?,
+            };
+            first_of.insert(position, first);
+            self.place_faces(primitive, position, first, transform.matrix3.determinant() < 0.0)?;
+        }
+        Ok(())
+    }
+
+    fn place_vertices(&mut self, position: usize, transform: DAffine3) -> Result<usize, ReadError> {
+        self.buffers.load(position)?;
+        self.spend(self.buffers.count(position)?)?;
+        let first = self.vertices.len();
+        for vertex in self.buffers.positions(position)? {
+            let vertex = transform.transform_point3(vertex);
+            if !vertex.is_finite() {
+                return Err(error("a vertex becomes infinite by the transforms of its nodes"));
+            }
+            self.vertices.push(vertex);
+        }
+        if u32::try_from(self.vertices.len()).is_err() {
+            return Err(error("the scene has more than 4,294,967,295 vertices"));
+        }
+        Ok(first)
+    }
+
+    fn place_faces(
+        &mut self,
+        primitive: &Primitive,
+        position: usize,
+        first: usize,
+        mirrored: bool,
+    ) -> Result<(), ReadError> {
+        let vertex_count = self.buffers.count(position)?;
+        let count = primitive.indices.map_or(Ok(vertex_count), |i| self.buffers.count(i))?;
+        self.spend(count)?;
+        let mut corners = match primitive.indices {
+            Some(indices) => {
+                self.buffers.load(indices)?;
+                self.buffers.indices(indices)?
+            }
+            None => (0..vertex_count as u32).collect(),
+        };
+        for corner in &mut corners {
+            if *corner as usize >= vertex_count {
+                return Err(error(format!(
+                    "an index is {corner}, but its primitive has only {vertex_count} vertices"
+                )));
+            }
+            *corner += first as u32;
+        }
+        let start = self.faces.triangle_count();
+        match primitive.mode {
+            4 if !corners.len().is_multiple_of(3) => {
+                return Err(error(format!(
+                    "a primitive of triangles has {} corners, which is no multiple of 3",
+                    corners.len()
+                )));
+            }
+            4 => corners.chunks_exact(3).for_each(|triangle| self.faces.push(triangle)),
+            5 => self.faces.push_strip(&corners),
+            _ => corners.windows(2).skip(1).for_each(|pair| {
+                self.faces.push(&[corners[0], pair[0], pair[1]]);
+            }),
+        }
+        if mirrored {
+            self.faces.turn_from(start);
+        }
+        Ok(())
+    }
+
+    /// Instances can make much of little: keeps the whole in proportion to the files.
+    fn spend(&mut self, work: usize) -> Result<(), ReadError> {
+        self.work = self.work.saturating_add(work);
+        let limit = (2 * (self.file_length + self.buffers.side_bytes())).max(1_000_000);
+        if self.work > limit {
+            return Err(error(format!(
+                "with all instances, the file has more than {limit} vertices and indices, out of proportion to its size: its counts are wrong, or it has too many instances"
+            )));
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<Parsed, ReadError> {
+        if self.vertices.is_empty() {
+            return Err(error(
+                "the scene has no triangles (only triangles, strips and fans are read, of nodes in the scene)",
+            ));
+        }
+        let face_count = self.faces.count;
+        let triangles = self.faces.finish(&self.vertices);
+        Ok(Parsed {
+            vertices: self.vertices,
+            triangles,
+            face_count,
+            object_count: self.object_count,
+        })
+    }
+}
+
+/// Puts nodes on the stack, the first on top; none may be there or have been there.
+fn push(
+    stack: &mut Vec<(usize, DAffine3)>,
+    seen: &mut [bool],
+    nodes: &[usize],
+    parent: DAffine3,
+) -> Result<(), ReadError> {
+    for &index in nodes.iter().rev() {
+        get(seen, index, "node")?;
+        if std::mem::replace(&mut seen[index], true) {
+            return Err(error(format!(
+                "node {index} is reached twice; the nodes of a scene must form trees, without cycles"
+            )));
+        }
+        stack.push((index, parent));
+    }
+    Ok(())
+}
+
+/// The transform of a node relative to its parent.
+fn local_transform(node: &Node, index: usize) -> Result<DAffine3, ReadError> {
+    if let Some(matrix) = &node.matrix {
+        let column = |i: usize| DVec3::new(matrix[4 * i], matrix[4 * i + 1], matrix[4 * i + 2]);
+        return Ok(DAffine3 {
+            matrix3: DMat3::from_cols(column(0), column(1), column(2)),
+            translation: column(3),
+        });
+    }
+    let rotation = match &node.rotation {
+        Some(rotation) => DQuat::from_array(**rotation),
+        None => DQuat::IDENTITY,
+    };
+    let length = rotation.length();
+    if !(length.is_finite() && length > 0.0) {
+        return Err(error(format!(
+            "the rotation of node {index} must be a quaternion of length 1"
+        )));
+    }
+    let scale = node.scale.as_ref().map_or(DVec3::ONE, |scale| DVec3::from_array(**scale));
+    let translation = node.translation.as_ref().map_or(DVec3::ZERO, |t| DVec3::from_array(**t));
+    Ok(DAffine3::from_scale_rotation_translation(scale, rotation / length, translation))
+}

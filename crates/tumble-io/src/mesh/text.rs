@@ -1,0 +1,172 @@
+//! Words and lines of a text format, without a copy, with the place of each for messages.
+
+use super::{Place, ReadError};
+
+/// Walks through the words of a text, line by line.
+#[derive(Clone)]
+pub(super) struct Words<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: usize,
+    line_start: usize,
+    word_start: usize,
+    style: Style,
+}
+
+/// What differs between the text formats.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Style {
+    /// `#` opens a comment, a backslash at the end of a line joins the next line to it.
+    Obj,
+    /// Neither comments nor joined lines.
+    Plain,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn new(bytes: &'a [u8], style: Style) -> Self {
+        // a byte order mark is no content
+        let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Self { bytes, at, line: 1, line_start: at, word_start: at, style }
+    }
+
+    /// The next word of this line, or nothing at its end.
+    pub(super) fn next_word(&mut self) -> Option<&'a [u8]> {
+        self.skip_blanks();
+        self.word_start = self.at;
+        while let Some(&byte) = self.bytes.get(self.at) {
+            let ends = is_blank(byte) || byte == b'\n' || byte == b'\r';
+            if ends || byte == b'\\' && self.joined_line().is_some() {
+                break;
+            }
+            self.at += 1;
+        }
+        (self.at > self.word_start).then(|| &self.bytes[self.word_start..self.at])
+    }
+
+    fn skip_blanks(&mut self) {
+        while let Some(&byte) = self.bytes.get(self.at) {
+            if is_blank(byte) {
+                self.at += 1;
+            } else if let Some(next) = self.joined_line() {
+                (self.at, self.line, self.line_start) = (next, self.line + 1, next);
+            } else {
+                // a comment runs to the end of its line
+                if byte == b'#' && self.style == Style::Obj {
+                    self.at = self.line_end();
+                }
+                return;
+            }
+        }
+    }
+
+    /// Where the next line begins, if a backslash here joins it to this one.
+    fn joined_line(&self) -> Option<usize> {
+        match self.bytes.get(self.at..)? {
+            [b'\\', b'\r', b'\n', ..] if self.style == Style::Obj => Some(self.at + 3),
+            [b'\\', b'\r' | b'\n', ..] if self.style == Style::Obj => Some(self.at + 2),
+            _ => None,
+        }
+    }
+
+    fn line_end(&self) -> usize {
+        let rest = &self.bytes[self.at..];
+        self.at + rest.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(rest.len())
+    }
+
+    /// Goes to the next line (`\n`, `\r\n` or `\r`); false at the end of the text.
+    pub(super) fn next_line(&mut self) -> bool {
+        // finish a statement whose line is joined to the next
+        while self.style == Style::Obj && self.next_word().is_some() {}
+        let end = self.line_end();
+        let width = match &self.bytes[end..] {
+            [] => 0,
+            [b'\r', b'\n', ..] => 2,
+            _ => 1,
+        };
+        (self.at, self.line) = (end + width, self.line + usize::from(width > 0));
+        (self.line_start, self.word_start) = (self.at, self.at);
+        width > 0
+    }
+
+    /// The next word as a finite number; `what` names it in messages.
+    pub(super) fn next_number(&mut self, what: &str) -> Result<f64, ReadError> {
+        match self.next_word() {
+            Some(word) => self.number(word, what),
+            None => Err(self.error(format!("{what} is missing; a number is expected"))),
+        }
+    }
+
+    /// A word as a finite number.
+    pub(super) fn number(&self, word: &[u8], what: &str) -> Result<f64, ReadError> {
+        let text = std::str::from_utf8(word).unwrap_or("");
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            Ok(_) if text.bytes().any(|b| b.is_ascii_digit()) => Err(self.error(format!(
+                "{what} is {}, which is larger than a double can hold (about 1.8e308)",
+                show(word)
+            ))),
+            Ok(_) => Err(self.error(format!("{what} is {}; it must be finite", show(word)))),
+            Err(_) => Err(self.error(format!("{what} is {}, which is not a number", show(word)))),
+        }
+    }
+
+    /// Counts the words that are left on this line.
+    pub(super) fn count_rest(&mut self) -> usize {
+        std::iter::from_fn(|| self.next_word()).count()
+    }
+
+    /// Where the walk stands, in bytes from the beginning.
+    pub(super) fn offset(&self) -> usize {
+        self.at
+    }
+
+    /// The place of the last word.
+    pub(super) fn place(&self) -> Place {
+        Place::Line { line: self.line, column: Some(self.word_start - self.line_start + 1) }
+    }
+
+    /// An error at the last word.
+    pub(super) fn error(&self, message: impl Into<String>) -> ReadError {
+        ReadError::new(Some(self.place()), message)
+    }
+
+    /// An error that concerns the whole line.
+    pub(super) fn line_error(&self, message: impl Into<String>) -> ReadError {
+        ReadError::new(Some(Place::Line { line: self.line, column: None }), message)
+    }
+}
+
+fn is_blank(byte: u8) -> bool {
+    matches!(byte, b' ' | b'\t' | 0x0b | 0x0c)
+}
+
+/// A word as it may appear in a message: short, and without control characters.
+pub(super) fn show(word: &[u8]) -> String {
+    let text = String::from_utf8_lossy(&word[..word.len().min(160)]);
+    let mut shown: String = text.chars().take(40).flat_map(char::escape_debug).collect();
+    if text.chars().count() > 40 {
+        shown.push('…');
+    }
+    format!("`{shown}`")
+}
+
+/// Refuses bytes that can not be text, before they give an error that nobody understands.
+pub(super) fn check_text(bytes: &[u8], format: &str) -> Result<(), ReadError> {
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err(ReadError::new(
+            Some(Place::Byte(0)),
+            format!(
+                "the file is UTF-16 text; {format} must be plain ASCII or UTF-8: save it as UTF-8"
+            ),
+        ));
+    }
+    match bytes.iter().take(8192).position(|&b| b == 0) {
+        None => Ok(()),
+        Some(at) => Err(ReadError::new(
+            Some(Place::Byte(at as u64)),
+            format!(
+                "not a text file (this byte is zero), but {format} is text: is the file another format, or damaged?"
+            ),
+        )),
+    }
+}
