@@ -1,1 +1,3 @@
 //! Scenes, meshes, recordings, plots and pictures for [`tumble`].
+
+pub mod picture;
