@@ -1,3 +1,7 @@
 //! Scenes, meshes, recordings, plots and pictures for [`tumble`].
 
 pub mod mesh;
+pub mod picture;
+pub mod plot;
+pub mod run;
+pub mod scene;

@@ -120,7 +120,8 @@ impl<'a> Recording<'a> {
     fn start(folder: &'a RunFolder, world: &World) -> Result<Self, RunError> {
         let mut trajectory = folder.open("trajectory.csv")?;
         let mut ledger = folder.open("energy.csv")?;
-        writeln!(trajectory, "{TRAJECTORY_HEADER}").map_err(|e| failed(folder, "trajectory.csv", e))?;
+        writeln!(trajectory, "{TRAJECTORY_HEADER}")
+            .map_err(|e| failed(folder, "trajectory.csv", e))?;
         writeln!(ledger, "{LEDGER_HEADER}").map_err(|e| failed(folder, "energy.csv", e))?;
         let recorder = Recorder::new(world.body_count());
         Ok(Self { folder, trajectory, ledger, recorder, start: world.energy().total() })
@@ -130,7 +131,8 @@ impl<'a> Recording<'a> {
         let row = ledger_row(world.time(), &world.energy(), self.start);
         write_frame(&mut self.trajectory, world)
             .map_err(|e| failed(self.folder, "trajectory.csv", e))?;
-        writeln!(self.ledger, "{}", line(&row)).map_err(|e| failed(self.folder, "energy.csv", e))?;
+        writeln!(self.ledger, "{}", line(&row))
+            .map_err(|e| failed(self.folder, "energy.csv", e))?;
         self.recorder.record(world, row);
         Ok(())
     }

@@ -5,8 +5,7 @@ use std::io::{self, Write};
 use tumble::World;
 
 /// The columns.
-pub const TRAJECTORY_HEADER: &str =
-    "time,body,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,lx,ly,lz";
+pub const TRAJECTORY_HEADER: &str = "time,body,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,lx,ly,lz";
 
 /// Writes one row for each body. Numbers have the shortest form that reads back to the same double.
 ///

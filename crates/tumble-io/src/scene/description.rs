@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use tumble::{DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Sampling, WallBox, WallPlane};
+use tumble::{
+    DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Sampling, WallBox, WallPlane,
+};
 
 use super::geometry::ShapeScene;
 

@@ -10,11 +10,8 @@ use super::reader::{Range, Reader};
 use crate::mesh::{Format, parse_mesh, read_mesh};
 
 /// The names of the mass models in scene files.
-pub const MASS_MODELS: [(&str, MassModel); 3] = [
-    ("particles", MassModel::Particles),
-    ("shell", MassModel::Shell),
-    ("solid", MassModel::Solid),
-];
+pub const MASS_MODELS: [(&str, MassModel); 3] =
+    [("particles", MassModel::Particles), ("shell", MassModel::Shell), ("solid", MassModel::Solid)];
 
 const CAT: &[u8] = include_bytes!("../../../../assets/cat.obj");
 
@@ -119,11 +116,12 @@ pub fn make(body: &mut BodyScene, folder: &Path) -> Result<Made, GeometryError> 
         *vertex *= body.scale;
     }
     let bare = matches!(body.geometry, Geometry::Particles(_));
-    let shape = if bare && body.sampling == Sampling::Vertices && body.mass_model == MassModel::Particles {
-        Shape::of_particles(&mesh.vertices)
-    } else {
-        Shape::of_mesh(&mesh, body.sampling, body.mass_model)
-    };
+    let shape =
+        if bare && body.sampling == Sampling::Vertices && body.mass_model == MassModel::Particles {
+            Shape::of_particles(&mesh.vertices)
+        } else {
+            Shape::of_mesh(&mesh, body.sampling, body.mass_model)
+        };
     let shape = shape.map_err(|error| blame(guilty_key(body, &error), error))?;
     let mass = mass(body, &mesh, &shape)?;
     Ok(Made { shape: Arc::new(shape), mass })

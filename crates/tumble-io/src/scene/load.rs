@@ -62,7 +62,9 @@ fn read_text(path: &Path) -> Result<String, String> {
     }
     if metadata.len() > MOST_BYTES {
         let most = MOST_BYTES >> 20;
-        return Err(format!("{shown} is larger than {most} MiB: no scene; put particles into a mesh file"));
+        return Err(format!(
+            "{shown} is larger than {most} MiB: no scene; put particles into a mesh file"
+        ));
     }
     let bytes =
         std::fs::read(path).map_err(|error| format!("cannot read the scene {shown}: {error}"))?;

@@ -67,7 +67,9 @@ fn integrator(top: &Reader) -> Integrator {
 
 /// The keys of a material, in any table that may hold them.
 pub fn material(reader: &Reader) -> MaterialOverride {
-    MaterialOverride { collision_stiffness: reader.number("collision_stiffness", Range::NotNegative) }
+    MaterialOverride {
+        collision_stiffness: reader.number("collision_stiffness", Range::NotNegative),
+    }
 }
 
 fn walls_of_box(reader: Reader) -> Option<BoxScene> {
@@ -104,7 +106,11 @@ pub fn orientation(reader: &Reader) -> DQuat {
     }
     let q = DQuat::from_xyzw(x, y, z, w);
     // one that is normalised already keeps its bits
-    if (q.length_squared() - 1.0).abs() < 4.0 * f64::EPSILON { q } else { (q / largest).normalize() }
+    if (q.length_squared() - 1.0).abs() < 4.0 * f64::EPSILON {
+        q
+    } else {
+        (q / largest).normalize()
+    }
 }
 
 fn wall(reader: Reader) -> Option<WallScene> {

@@ -16,8 +16,6 @@ pub enum Range {
     Positive,
     /// 0 or more.
     NotNegative,
-    /// Above 0, up to 1.
-    UpToOne,
 }
 
 impl Range {
@@ -27,7 +25,6 @@ impl Range {
                 Self::Finite => true,
                 Self::Positive => x > 0.0,
                 Self::NotNegative => x >= 0.0,
-                Self::UpToOne => x > 0.0 && x <= 1.0,
             }
     }
 
@@ -36,7 +33,6 @@ impl Range {
             Self::Finite => "finite",
             Self::Positive => "above 0",
             Self::NotNegative => "0 or more",
-            Self::UpToOne => "above 0, up to 1",
         }
     }
 }
@@ -138,7 +134,10 @@ impl<'a> Reader<'a> {
         match numbers(node) {
             Some(x) if x.iter().all(|&x| range.allows(x)) => Some(x),
             Some(x) => {
-                self.problem(key, format!("must hold numbers that are {}, but is {x:?}", range.text()));
+                self.problem(
+                    key,
+                    format!("must hold numbers that are {}, but is {x:?}", range.text()),
+                );
                 None
             }
             None => {
@@ -199,7 +198,11 @@ impl<'a> Reader<'a> {
     }
 
     /// An array of strings, each one of `allowed`.
-    pub fn choices(&self, key: &'static str, allowed: &[&'static str]) -> Option<Vec<&'static str>> {
+    pub fn choices(
+        &self,
+        key: &'static str,
+        allowed: &[&'static str],
+    ) -> Option<Vec<&'static str>> {
         let node = self.get(key)?;
         let Value::Array(items) = &node.value else {
             self.wrong_type(key, node, &format!("an array of {}", quoted(allowed)));
@@ -248,7 +251,9 @@ impl<'a> Reader<'a> {
                 Value::Array(items) => items
                     .iter()
                     .enumerate()
-                    .map(|(i, item)| Reader::new(item, format!("{}.{i}", self.key(key)), self.problems))
+                    .map(|(i, item)| {
+                        Reader::new(item, format!("{}.{i}", self.key(key)), self.problems)
+                    })
                     .collect(),
                 _ => {
                     let problem = Problem::new(
@@ -268,7 +273,10 @@ impl<'a> Reader<'a> {
         let given: Vec<_> = keys.iter().filter(|key| self.has(key)).copied().collect();
         if given.len() > 1 {
             let rest = quoted_keys(&given[..given.len() - 1]);
-            self.problem(given[given.len() - 1], format!("cannot stand beside {rest}: give only one"));
+            self.problem(
+                given[given.len() - 1],
+                format!("cannot stand beside {rest}: give only one"),
+            );
         }
         given.first().copied()
     }
@@ -284,7 +292,8 @@ impl<'a> Reader<'a> {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("known here: {}", quoted_keys(&known)),
             };
-            let problem = Problem::new(entry.place.clone(), self.key(&entry.key), "is not a known key");
+            let problem =
+                Problem::new(entry.place.clone(), self.key(&entry.key), "is not a known key");
             self.report(problem.help(help));
         }
     }

@@ -33,7 +33,7 @@ pub enum Value {
     Integer(i64),
     String(String),
     Boolean(bool),
-    Date(String),
+    Date,
 }
 
 /// A key of a table with its value.
@@ -54,7 +54,7 @@ impl Value {
             Self::Integer(_) => "an integer",
             Self::String(_) => "a string",
             Self::Boolean(_) => "a boolean",
-            Self::Date(_) => "a date",
+            Self::Date => "a date",
         }
     }
 }
@@ -98,7 +98,7 @@ fn from_value(value: Spanned<DeValue<'_>>, source: usize) -> Node {
         },
         DeValue::Float(float) => Value::Number(float.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(boolean) => Value::Boolean(boolean),
-        DeValue::Datetime(date) => Value::Date(date.to_string()),
+        DeValue::Datetime(_) => Value::Date,
         DeValue::Array(array) => {
             Value::Array(array.into_iter().map(|item| from_value(item, source)).collect())
         }
@@ -124,12 +124,14 @@ pub fn set(root: &mut Node, assignment: &str, source: usize) -> Result<Source, P
     };
     let path: Vec<&str> = key.trim().split('.').map(str::trim).collect();
     if path.iter().any(|part| part.is_empty()) {
-        let message = format!("`{key}` is no key; write it as `dt` or `collision.collision_stiffness`");
+        let message =
+            format!("`{key}` is no key; write it as `dt` or `collision.collision_stiffness`");
         return Err(Problem::new(Place { source, span: 0..key.len() }, "", message));
     }
     let node = Node { value: relocate(value, &place), place };
     let key_place = Place { source, span: 0..key.len() };
-    assign(root, &path, &node, &key_place).map_err(|message| Problem::new(key_place, "", message))?;
+    assign(root, &path, &node, &key_place)
+        .map_err(|message| Problem::new(key_place, "", message))?;
     Ok(told)
 }
 
@@ -163,7 +165,8 @@ fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result
                     entries.len() - 1
                 }
             };
-            entries[at].place = if rest.is_empty() { place.clone() } else { entries[at].place.clone() };
+            entries[at].place =
+                if rest.is_empty() { place.clone() } else { entries[at].place.clone() };
             assign(&mut entries[at].node, rest, new, place)
         }
         Value::Array(items) => match part.parse::<usize>() {
@@ -171,7 +174,9 @@ fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result
                 let count = items.len();
                 match items.get_mut(index) {
                     Some(item) => assign(item, rest, new, place),
-                    None => Err(format!("there is no number {index} here; there are {count}, counted from 0")),
+                    None => Err(format!(
+                        "there is no number {index} here; there are {count}, counted from 0"
+                    )),
                 }
             }
             Err(_) => items.iter_mut().try_for_each(|item| assign(item, path, new, place)),

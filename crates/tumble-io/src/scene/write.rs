@@ -1,9 +1,7 @@
 //! A scene as TOML again, every default written out.
 
 use toml::{Table, Value};
-use tumble::{
-    DQuat, DVec3, Material, MaterialOverride, Primitive, Sampling, WallBox, WallPlane,
-};
+use tumble::{DQuat, DVec3, Material, MaterialOverride, Primitive, Sampling, WallBox, WallPlane};
 
 use super::description::{BodyScene, Geometry, MassScene, Scene};
 use super::geometry::{MASS_MODELS, ShapeScene};
@@ -52,9 +50,10 @@ impl Scene {
 
     /// Every wall with its own material: the box's faces first, then the single ones.
     pub fn all_walls(&self) -> Vec<(WallPlane, MaterialOverride)> {
-        let of_box = self.walls_of_box.iter().flat_map(|own| {
-            own.walls.planes().into_iter().map(|plane| (plane, own.material))
-        });
+        let of_box = self
+            .walls_of_box
+            .iter()
+            .flat_map(|own| own.walls.planes().into_iter().map(|plane| (plane, own.material)));
         of_box.chain(self.walls.iter().map(|wall| (wall.plane, wall.material))).collect()
     }
 

@@ -1,0 +1,89 @@
+//! `tumble info`: what a mesh is.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use tumble::{DVec3, MassModel, Sampling, Shape};
+use tumble_io::mesh::{MeshFile, read_mesh};
+
+use crate::table::{count, short, table};
+use crate::{Failure, print};
+
+#[derive(Args)]
+pub struct InfoArgs {
+    /// The mesh: .obj .stl .ply .gltf .glb
+    mesh: PathBuf,
+    /// Factor on all coordinates
+    #[arg(long, default_value_t = 1.0)]
+    scale: f64,
+    /// Mass of each particle (kg)
+    #[arg(long, default_value_t = 1.0, value_name = "KG")]
+    particle_mass: f64,
+    /// Merge vertices of the same coordinates, or keep them [default: as the format suggests]
+    #[arg(long, value_name = "true|false")]
+    weld: Option<bool>,
+}
+
+pub fn info(args: &InfoArgs) -> Result<(), Failure> {
+    for (name, value) in [("--scale", args.scale), ("--particle-mass", args.particle_mass)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(Failure::Call(format!("error: {name} must be above 0, but is {value}")));
+        }
+    }
+    let call = |error: &dyn std::fmt::Display| Failure::Call(format!("error: {error}"));
+    let mut file = read_mesh(&args.mesh, args.weld).map_err(|error| call(&error))?;
+    for vertex in &mut file.mesh.vertices {
+        *vertex *= args.scale;
+    }
+    let shape = Shape::of_mesh(&file.mesh, Sampling::Vertices, MassModel::Particles)
+        .map_err(|error| call(&error))?;
+    print(&table(&rows(&file, &shape, args.particle_mass)))
+}
+
+fn rows(file: &MeshFile, shape: &Shape, particle_mass: f64) -> Vec<(&'static str, String)> {
+    let mesh = &file.mesh;
+    let mass = particle_mass * shape.moments().count;
+    let infinite = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (min, max) = mesh.vertices.iter().fold(infinite, |(min, max), &v| (min.min(v), max.max(v)));
+    let axes = shape.principal().axes;
+    let moments = shape.principal().moments * mass;
+    let mut rows = vec![
+        ("file", format!("{}, {} objects", file.format, file.object_count)),
+        ("particles", particles(file)),
+        ("triangles", count(mesh.triangles.len() as u64)),
+        ("mass", format!("{} kg ({} kg in each particle)", short(mass), short(particle_mass))),
+        ("centre of mass", format!("{} m", vector(shape.centre()))),
+        ("size", format!("{} m", vector(max - min))),
+        ("from, to", format!("{} m, {} m", vector(min), vector(max))),
+        ("radius", format!("{} m about the centre of mass", short(shape.radius()))),
+        ("principal moments", format!("{} kg·m²", vector(moments))),
+        (
+            "principal axes",
+            format!("{}, {}, {}", vector(axes.x_axis), vector(axes.y_axis), vector(axes.z_axis)),
+        ),
+        ("rotates about", format!("{} axes", shape.principal().rotation_count())),
+    ];
+    match mesh.solid_integrals() {
+        Ok(solid) => {
+            rows.push(("watertight", "yes".to_owned()));
+            rows.push(("volume", format!("{} m³", short(solid.measure))));
+        }
+        Err(why) => rows.push(("watertight", format!("no: {why}"))),
+    }
+    if let Ok(shell) = mesh.shell_integrals() {
+        rows.push(("surface", format!("{} m²", short(shell.measure))));
+    }
+    rows.push(("sha256", file.sha256.clone()));
+    rows
+}
+
+fn particles(file: &MeshFile) -> String {
+    let kept = file.mesh.vertices.len();
+    let merged = file.file_vertex_count - kept;
+    let all = count(kept as u64);
+    if merged > 0 { format!("{all} ({} duplicates merged)", count(merged as u64)) } else { all }
+}
+
+fn vector(v: DVec3) -> String {
+    format!("({}, {}, {})", short(v.x), short(v.y), short(v.z))
+}

@@ -1,0 +1,149 @@
+//! `tumble run`: simulates a scene and writes its results.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use tumble_io::run::{Finished, Progress, RunError, RunFolder};
+use tumble_io::scene::{Loaded, load_builtin, load_file};
+
+use crate::scenes::unknown_scene;
+use crate::table::{count, short, table};
+use crate::{Failure, colour, print};
+
+#[derive(Args)]
+pub struct RunArgs {
+    /// A scene file, or the name of a built-in scene
+    #[arg(default_value = "task2")]
+    scene: String,
+    /// Folder for the results [default: out/SCENE, or the next free out/SCENE-2, …]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Change one key of the scene, e.g. dt=1e-4, collision.collision_stiffness=1e5, body.0.scale=0.5
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// Simulated seconds, instead of the scene's
+    #[arg(long, value_name = "S")]
+    duration: Option<String>,
+    /// Write over the results of another run in --out
+    #[arg(long)]
+    force: bool,
+}
+
+pub fn run(args: &RunArgs) -> Result<(), Failure> {
+    let loaded = load(args)?;
+    let name = loaded.scene.name.clone();
+    let folder = match &args.out {
+        Some(path) => RunFolder::create(path, args.force),
+        None => RunFolder::create_next(Path::new("out"), &name),
+    }
+    .map_err(|error| failure(&error))?;
+    let stop = stop_on_ctrl_c();
+    let bar = progress_bar();
+    let finished = tumble_io::run::run(loaded, &folder, &mut |progress| {
+        show(&bar, progress);
+        !stop.load(Ordering::Relaxed)
+    });
+    bar.finish_and_clear();
+    let finished = finished.map_err(|error| failure(&error))?;
+    print(&report(&finished, &folder))?;
+    if finished.summary.interrupted { Err(Failure::Interrupted) } else { Ok(()) }
+}
+
+fn load(args: &RunArgs) -> Result<Loaded, Failure> {
+    let mut sets = args.set.clone();
+    sets.extend(args.duration.iter().map(|seconds| format!("duration={seconds}")));
+    let path = Path::new(&args.scene);
+    let loaded = match load_builtin(&args.scene, &sets) {
+        // a file of that very name in the folder is still reached as ./NAME
+        Some(loaded) => loaded,
+        None if path.exists() => load_file(path, &sets),
+        None => return Err(Failure::Call(unknown_scene(&args.scene))),
+    };
+    loaded.map_err(|error| {
+        let count = error.problem_count();
+        let total = if count > 1 {
+            format!("\n\n{count} problems; nothing was run")
+        } else {
+            String::new()
+        };
+        Failure::Call(format!("{}{total}", error.render(colour())))
+    })
+}
+
+fn failure(error: &RunError) -> Failure {
+    let message = format!("error: {error}");
+    match error {
+        RunError::Taken(_) => Failure::Call(message),
+        _ => Failure::Run(message),
+    }
+}
+
+/// A flag that the first Ctrl-C (or a request to terminate) raises; a second one ends at once.
+fn stop_on_ctrl_c() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let raised = Arc::clone(&stop);
+    let set = ctrlc::set_handler(move || {
+        if raised.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
+    if set.is_err() {
+        eprintln!("warning: Ctrl-C will stop the run without writing its last results");
+    }
+    stop
+}
+
+fn progress_bar() -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(0);
+    let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
+
+fn show(bar: &ProgressBar, progress: Progress) {
+    bar.set_length(progress.steps);
+    bar.set_position(progress.step);
+    bar.set_message(format!("t = {:.3} s", progress.time));
+}
+
+fn report(finished: &Finished, folder: &RunFolder) -> String {
+    let (s, e) = (&finished.summary, &finished.energy);
+    let lost = e.drag + e.dashpot + e.slip;
+    let relative = if s.energy_start != 0.0 {
+        format!(" ({:+.2e} of the start)", s.energy_residual / s.energy_start.abs())
+    } else {
+        String::new()
+    };
+    let rows = [
+        ("scene", format!("{}, {} bodies, {} particles", s.scene, s.bodies, count(s.particles))),
+        ("integrator", format!("{}, dt = {} s", s.integrator, short(s.dt))),
+        ("steps", format!("{} in {} s", count(s.steps), short(s.wall_seconds))),
+        ("speed", format!("{} steps/s", count(s.steps_per_second as u64))),
+        (
+            "time",
+            format!("{} s{}", short(s.time), if s.interrupted { " (stopped early)" } else { "" }),
+        ),
+        ("energy", format!("{} J at the start", short(s.energy_start))),
+        (
+            "",
+            format!(
+                "{} J kinetic, {} J gravitational, {} J elastic at the end",
+                short(e.kinetic),
+                short(e.gravitational),
+                short(e.elastic)
+            ),
+        ),
+        ("", format!("{} J lost on the way", short(lost))),
+        ("residual", format!("{} J{relative}", short(s.energy_residual))),
+        ("deepest contact", format!("{} m", short(s.max_depth))),
+        ("results", folder.path().display().to_string()),
+    ];
+    table(&rows)
+}

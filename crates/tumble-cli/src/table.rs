@@ -1,0 +1,54 @@
+//! Two aligned columns for people.
+
+/// `  name   value`, names padded to one width.
+pub fn table(rows: &[(&str, String)]) -> String {
+    let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    rows.iter().map(|(name, value)| format!("  {name:width$}  {value}\n")).collect()
+}
+
+/// A number for people: four to six digits, an exponent only where it is needed.
+pub fn short(x: f64) -> String {
+    let size = x.abs();
+    if size == 0.0 {
+        "0".to_owned()
+    } else if (1e-3..1e6).contains(&size) {
+        let digits = (4 - size.log10().floor() as i32).clamp(0, 7) as usize;
+        let text = format!("{x:.digits$}");
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        }
+    } else {
+        format!("{x:.4e}")
+    }
+}
+
+/// A count with thousands apart: 1,234,567.
+pub fn count(n: u64) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push(',');
+        }
+        out.push(digit);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        assert_eq!(short(0.0), "0");
+        assert_eq!(short(42.0), "42");
+        assert_eq!(short(-0.001234567), "-0.0012346");
+        assert_eq!(short(123456.7), "123457");
+        assert_eq!(short(1e-9), "1.0000e-9");
+        assert_eq!(count(1234567), "1,234,567");
+        assert_eq!(count(12), "12");
+    }
+}
