@@ -107,6 +107,7 @@ fn missing(path: &Path) -> ReadError {
 fn nearest_name(folder: &Path, path: &Path) -> Option<String> {
     let wanted: Vec<char> = path.file_name()?.to_str()?.to_lowercase().chars().take(256).collect();
     let near = (wanted.len() / 3).clamp(1, 4);
+    let stem = |path: &Path| path.file_stem().map(|stem| stem.to_ascii_lowercase());
     fs::read_dir(folder)
         .ok()?
         .take(10_000)
@@ -114,7 +115,9 @@ fn nearest_name(folder: &Path, path: &Path) -> Option<String> {
         .filter(|name| format_of(Path::new(name)).is_ok())
         .map(|name| {
             let chars: Vec<char> = name.to_lowercase().chars().take(256).collect();
-            (edit_distance(&wanted, &chars), name)
+            // the same name in another format is as near as one letter
+            let same_stem = stem(Path::new(&name)) == stem(path);
+            (if same_stem { 1 } else { edit_distance(&wanted, &chars) }, name)
         })
         .filter(|(distance, _)| *distance <= near)
         .min()

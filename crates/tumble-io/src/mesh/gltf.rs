@@ -152,17 +152,27 @@ impl<'a> Scene<'a> {
                 .try_for_each(|mesh| self.place(mesh, DAffine3::IDENTITY));
         }
         let mut seen = vec![false; document.nodes.len()];
-        let mut stack: Vec<(usize, DAffine3)> = Vec::new();
-        push(&mut stack, &mut seen, &self.roots()?, DAffine3::IDENTITY)?;
-        while let Some((index, parent)) = stack.pop() {
+        let roots = self.roots()?;
+        // the children that are still to be visited, and the transform of their parent
+        let mut levels = vec![(roots.iter(), DAffine3::IDENTITY)];
+        while let Some((siblings, parent)) = levels.last_mut() {
+            let Some(&index) = siblings.next() else {
+                levels.pop();
+                continue;
+            };
             let node = get(&document.nodes, index, "node")?;
-            let transform = parent * local_transform(node, index)?;
+            if std::mem::replace(&mut seen[index], true) {
+                return Err(error(format!(
+                    "node {index} is reached twice; the nodes of a scene must form trees, without cycles"
+                )));
+            }
+            let transform = *parent * local_transform(node, index)?;
             match (node.mesh, node.skin) {
-                (Some(mesh), None) => self.place(mesh, transform)?,
-                (Some(mesh), Some(_)) => self.place(mesh, DAffine3::IDENTITY)?,
+                (Some(mesh), None) => self.place(mesh as usize, transform)?,
+                (Some(mesh), Some(_)) => self.place(mesh as usize, DAffine3::IDENTITY)?,
                 (None, _) => {}
             }
-            push(&mut stack, &mut seen, &node.children, transform)?;
+            levels.push((node.children.iter(), transform));
         }
         Ok(())
     }
@@ -292,25 +302,6 @@ impl<'a> Scene<'a> {
             object_count: self.object_count,
         })
     }
-}
-
-/// Puts nodes on the stack, the first on top; none may be there or have been there.
-fn push(
-    stack: &mut Vec<(usize, DAffine3)>,
-    seen: &mut [bool],
-    nodes: &[usize],
-    parent: DAffine3,
-) -> Result<(), ReadError> {
-    for &index in nodes.iter().rev() {
-        get(seen, index, "node")?;
-        if std::mem::replace(&mut seen[index], true) {
-            return Err(error(format!(
-                "node {index} is reached twice; the nodes of a scene must form trees, without cycles"
-            )));
-        }
-        stack.push((index, parent));
-    }
-    Ok(())
 }
 
 /// The transform of a node relative to its parent.

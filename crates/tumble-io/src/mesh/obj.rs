@@ -113,9 +113,7 @@ impl<'a> Reader<'a> {
     fn corner(&self, word: &[u8]) -> Result<u32, ReadError> {
         let slash = word.iter().position(|&b| b == b'/').unwrap_or(word.len());
         let (vertex, rest) = word.split_at(slash);
-        let well_formed = rest.iter().all(|b| matches!(b, b'0'..=b'9' | b'/' | b'-' | b'+'))
-            && rest.iter().filter(|&&b| b == b'/').count() <= 2;
-        let number = if well_formed { parse_integer(vertex) } else { None };
+        let number = if is_texture_and_normal(rest) { parse_integer(vertex) } else { None };
         let count = self.vertices.len();
         match number {
             None => Err(self.words.error(format!(
@@ -173,6 +171,19 @@ fn is_plausible(keyword: &[u8]) -> bool {
         && keyword.iter().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-'))
 }
 
+/// What may follow the vertex of a corner: nothing, `/vt`, `//vn` or `/vt/vn`.
+fn is_texture_and_normal(rest: &[u8]) -> bool {
+    let mut slashes = 0;
+    for byte in rest {
+        match byte {
+            b'/' => slashes += 1,
+            b'0'..=b'9' | b'-' | b'+' => {}
+            _ => return false,
+        }
+    }
+    slashes <= 2
+}
+
 /// A whole number; one that is too large becomes the largest.
 fn parse_integer(word: &[u8]) -> Option<i64> {
     let (negative, digits) = match word {
@@ -180,11 +191,15 @@ fn parse_integer(word: &[u8]) -> Option<i64> {
         [b'+', digits @ ..] => (false, digits),
         digits => (false, digits),
     };
-    if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
+    if digits.is_empty() {
         return None;
     }
-    let value = digits.iter().fold(0_i64, |value, digit| {
-        value.saturating_mul(10).saturating_add(i64::from(digit - b'0'))
-    });
+    let mut value = 0_i64;
+    for digit in digits {
+        if !digit.is_ascii_digit() {
+            return None;
+        }
+        value = value.saturating_mul(10).saturating_add(i64::from(digit - b'0'));
+    }
     Some(if negative { -value } else { value })
 }

@@ -19,10 +19,15 @@ pub(super) struct Faces {
 impl Faces {
     /// Takes a face; one of less than three corners is nothing.
     pub(super) fn push(&mut self, corners: &[u32]) {
-        let first = self.triangles.len();
-        self.triangles
-            .extend(corners.windows(2).skip(1).map(|pair| [corners[0], pair[0], pair[1]]));
         self.count += 1;
+        // most faces are triangles
+        if let &[a, b, c] = corners {
+            self.triangles.push([a, b, c]);
+            return;
+        }
+        let first = self.triangles.len();
+        let pairs = corners.windows(2).skip(1);
+        self.triangles.extend(pairs.map(|pair| [corners[0], pair[0], pair[1]]));
         if corners.len() > 3 {
             self.fans.push((first as u32, (corners.len() - 2) as u32));
         }

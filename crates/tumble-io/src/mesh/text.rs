@@ -33,12 +33,16 @@ impl<'a> Words<'a> {
     pub(super) fn next_word(&mut self) -> Option<&'a [u8]> {
         self.skip_blanks();
         self.word_start = self.at;
-        while let Some(&byte) = self.bytes.get(self.at) {
-            let ends = is_blank(byte) || byte == b'\n' || byte == b'\r';
-            if ends || byte == b'\\' && self.joined_line().is_some() {
-                break;
+        loop {
+            // most bytes belong to a word
+            let rest = &self.bytes[self.at..];
+            self.at += rest.iter().position(|&b| b <= b' ' || b == b'\\').unwrap_or(rest.len());
+            match self.bytes.get(self.at) {
+                Some(b'\\') if self.joined_line().is_some() => break,
+                None | Some(b'\n' | b'\r') => break,
+                Some(&byte) if is_blank(byte) => break,
+                Some(_) => self.at += 1,
             }
-            self.at += 1;
         }
         (self.at > self.word_start).then(|| &self.bytes[self.word_start..self.at])
     }

@@ -41,8 +41,8 @@ pub(super) struct Scene {
 #[derive(Deserialize)]
 pub(super) struct Node {
     #[serde(default)]
-    pub(super) children: Vec<usize>,
-    pub(super) mesh: Option<usize>,
+    pub(super) children: Box<[usize]>,
+    pub(super) mesh: Option<u32>,
     pub(super) skin: Option<u32>,
     /// Column by column.
     pub(super) matrix: Option<Box<[f64; 16]>>,

@@ -1,0 +1,66 @@
+//! Reading takes memory in proportion to the file, whatever the file promises. One test only: it counts
+//! the memory of the whole program.
+#![allow(clippy::unwrap_used)]
+
+use peak_alloc::PeakAlloc;
+use tumble_io::mesh::{Format, parse_mesh};
+
+#[global_allocator]
+static MEMORY: PeakAlloc = PeakAlloc;
+
+/// What a small file may take beyond its proportion: glTF allows a million instanced vertices.
+const FLOOR: usize = 64 << 20;
+/// Bytes of memory for each byte of a file, at worst.
+const PROPORTION: usize = 64;
+
+#[test]
+fn memory_stays_in_proportion() {
+    let xyz = "property float x\nproperty float y\nproperty float z\n";
+    let ply = |count: &str, body: &[u8]| {
+        let header = format!(
+            "ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{xyz}element face 1\nproperty list uint uchar vertex_index\nend_header\n"
+        );
+        [header.as_bytes(), body].concat()
+    };
+    let stl = [[b' '; 80].as_slice(), &u32::MAX.to_le_bytes(), &[0; 5000]].concat();
+    let gltf = |accessor: &str, nodes: &str| {
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"nodes":[{nodes}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],"accessors":[{{"componentType":5126,"type":"VEC3",{accessor}}}],"bufferViews":[{{"buffer":0,"byteLength":36}}],"buffers":[{{"byteLength":36,"uri":"data:;base64,{}"}}]}}"#,
+            "A".repeat(48)
+        )
+        .into_bytes()
+    };
+    let sparse = r#""count":4000000000,"sparse":{"count":1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0}}"#;
+    let cases = [
+        ("vertices", Format::Ply, ply("4294967295", &[0; 5000])),
+        ("list", Format::Ply, ply("1", &[&[0; 12], [255; 4].as_slice(), &[0; 5000]].concat())),
+        ("triangles", Format::Stl, stl),
+        ("sparse", Format::Gltf, gltf(sparse, r#"{"mesh":0}"#)),
+        ("elements", Format::Gltf, gltf(r#""bufferView":0,"count":4000000000"#, r#"{"mesh":0}"#)),
+        (
+            "instances",
+            Format::Gltf,
+            gltf(r#""bufferView":0,"count":3"#, &vec![r#"{"mesh":0}"#; 400_000].join(",")),
+        ),
+        (
+            "nodes",
+            Format::Gltf,
+            gltf(r#""bufferView":0,"count":3"#, &vec!["{}"; 2_000_000].join(",")),
+        ),
+        ("face", Format::Obj, [b"v 0 0 0\nf".to_vec(), b" 1".repeat(5_000_000)].concat()),
+        ("vertices", Format::Obj, b"v 0 0 0\n".repeat(1_000_000)),
+        ("keyword", Format::Obj, vec![b'a'; 20_000_000]),
+        ("soup", Format::Stl, [b"solid\n".to_vec(), b"vertex 0 0 0\n".repeat(999_999)].concat()),
+    ];
+    for (name, format, bytes) in cases {
+        for weld in [false, true] {
+            let before = MEMORY.current_usage();
+            MEMORY.reset_peak_usage();
+            let _ = parse_mesh(format, &bytes, None, Some(weld));
+            let used = MEMORY.peak_usage() - before;
+            let allowed = FLOOR + PROPORTION * bytes.len();
+            println!("{format} {name}: {} bytes take {used}", bytes.len());
+            assert!(used < allowed, "{format} {name}: {} bytes take {used}", bytes.len());
+        }
+    }
+}
