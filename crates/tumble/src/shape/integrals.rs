@@ -22,10 +22,10 @@ use glam::{DMat3, DVec3};
 const CHUNK: usize = 1024;
 
 /// A measure below this part of what the mesh's size allows is rounding, not substance.
-const NOTHING: f64 = 1e-14;
+pub(super) const NOTHING: f64 = 1e-14;
 
 /// Meshes smaller or larger (m) would lose their fifth power to the range of doubles.
-const SIZES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
+pub(super) const SIZES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
 /// Measure, centre and second moment of a body of uniform density.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,7 +102,7 @@ impl std::fmt::Display for ShellError {
 
 impl std::error::Error for ShellError {}
 
-fn out_of_range(f: &mut std::fmt::Formatter<'_>, size: f64) -> std::fmt::Result {
+pub(super) fn out_of_range(f: &mut std::fmt::Formatter<'_>, size: f64) -> std::fmt::Result {
     write!(
         f,
         "the mesh is {size:e} m large, and only sizes from 1e-60 m to 1e60 m can be integrated"
@@ -274,3 +274,6 @@ impl Mesh {
 fn double_area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length()
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,6 +3,7 @@
 mod surface;
 mod volume;
 
+use super::integrals::out_of_range;
 use super::{Mesh, OpenMesh};
 use glam::DVec3;
 
@@ -39,6 +40,11 @@ pub enum SampleError {
     NoSurface,
     /// The mesh bounds no solid, so it has no inside.
     Open(OpenMesh),
+    /// The mesh is smaller than 1e-60 m or larger than 1e60 m, beyond what doubles can measure.
+    OutOfRange {
+        /// The longest edge of its bounding box (m).
+        size: f64,
+    },
     /// More than 20 million points would result.
     TooMany {
         /// The spacing (m).
@@ -64,6 +70,7 @@ impl std::fmt::Display for SampleError {
                 write!(f, "the spacing is {spacing} m, but must be positive and finite")
             }
             Self::NoSurface => write!(f, "the mesh has no triangles with an area to put points on"),
+            Self::OutOfRange { size } => out_of_range(f, *size),
             Self::Open(why) => write!(f, "only a closed mesh has an inside to fill: {why}"),
             Self::TooMany { spacing, points, would_do } => write!(
                 f,
@@ -128,10 +135,15 @@ fn check_spacing(spacing: f64) -> Result<(), SampleError> {
     }
 }
 
-/// Passes if `points` are few enough; `dimension` says how their number falls with the spacing.
-fn affordable(spacing: f64, points: f64, dimension: f64) -> Result<(), SampleError> {
+/// Passes if `points` are few enough; `dimension` says how their number falls with the spacing, and `size` how
+/// large the mesh is (m).
+fn affordable(spacing: f64, points: f64, dimension: f64, size: f64) -> Result<(), SampleError> {
     if points <= MAX_POINTS {
         return Ok(());
+    }
+    if !points.is_finite() {
+        // beyond doubles only the size tells what would do
+        return Err(SampleError::TooMany { spacing, points: f64::INFINITY, would_do: 0.01 * size });
     }
     // a little more than the limit asks for, as the number is an estimate
     let would_do = spacing * 1.01 * libm::pow(points / MAX_POINTS, 1.0 / dimension);

@@ -50,7 +50,7 @@ fn lobe_parameters(n: u32) -> Vec<f64> {
         }
         half.push(t);
     }
-    if n % 2 == 0 {
+    if n.is_multiple_of(2) {
         half[n as usize / 2] = FRAC_PI_3;
     }
     let mirrored = |k: u32| {

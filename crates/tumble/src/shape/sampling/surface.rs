@@ -8,6 +8,7 @@
 
 use super::{SampleError, affordable};
 use crate::shape::Mesh;
+use crate::shape::integrals::{NOTHING, SIZES};
 use glam::DVec3;
 
 /// Least distance between points, as a part of the spacing.
@@ -172,7 +173,7 @@ fn cells(mesh: &Mesh, origin: DVec3, spacing: f64) -> Vec<Cell> {
     for (&triangle, index) in mesh.triangles.iter().zip(0u64..) {
         let Some(corners) = mesh.corners(triangle) else { continue };
         let whole = Cell { corners: corners.map(|v| v - origin), key: mix(index) };
-        if double_area(&whole) <= TIE * TIE * whole.longest() {
+        if double_area(&whole) <= NOTHING * whole.longest() {
             continue;
         }
         stack.push(whole);
@@ -193,7 +194,7 @@ fn double_area(cell: &Cell) -> f64 {
 }
 
 /// Refuses before any work what would make too many points; returns about how many there will be.
-fn estimate(mesh: &Mesh, spacing: f64) -> Result<f64, SampleError> {
+fn estimate(mesh: &Mesh, spacing: f64, size: f64) -> Result<f64, SampleError> {
     // in units of the spacing, so that no square leaves the range of doubles before its time
     let (mut area, mut edges) = (0.0, 0.0);
     for corners in mesh.triangles.iter().filter_map(|&t| mesh.corners(t)) {
@@ -203,20 +204,19 @@ fn estimate(mesh: &Mesh, spacing: f64) -> Result<f64, SampleError> {
         edges += 0.2 * (cell.longest().sqrt() - 1.0).max(0.0);
     }
     let points = DENSITY * area;
-    if !(points + edges).is_finite() {
-        // beyond doubles: only the size says what spacing would do
-        let size = mesh.bounds().map_or(spacing, |b| b.size());
-        return Err(SampleError::TooMany { spacing, points: f64::INFINITY, would_do: 1e-3 * size });
-    }
-    affordable(spacing, points, 2.0)?;
-    affordable(spacing, edges, 1.0)?;
+    affordable(spacing, points, 2.0, size)?;
+    affordable(spacing, edges, 1.0, size)?;
     Ok(points)
 }
 
 /// Points on the surface, at least `DISTANCE` spacings apart and covering it.
 pub(super) fn surface(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleError> {
-    let expected = estimate(mesh, spacing)?;
-    let origin = mesh.bounds().ok_or(SampleError::NoSurface)?.centre();
+    let bounds = mesh.bounds().ok_or(SampleError::NoSurface)?;
+    let (origin, size) = (bounds.centre(), bounds.size());
+    if size > 0.0 && !SIZES.contains(&size) {
+        return Err(SampleError::OutOfRange { size });
+    }
+    let expected = estimate(mesh, spacing, size)?;
     let mut cells = cells(mesh, origin, spacing);
     if cells.is_empty() {
         return Err(SampleError::NoSurface);

@@ -12,7 +12,7 @@ use crate::shape::Mesh;
 use crate::shape::integrals::Bounds;
 use glam::{DVec2, DVec3};
 
-/// A point nearer to the surface than this part of the spacing is on it, and so outside.
+/// A point nearer to the surface than this part of the spacing (or of the mesh, if that is smaller) is on it, and so outside.
 const ON_SURFACE: f64 = 1e-6;
 
 /// The lines through one column: a point is inside if it is for all four, whichever side a wall lies.
@@ -22,6 +22,8 @@ const LINES: [DVec2; 4] =
 /// A cubic lattice centred at the origin.
 struct Lattice {
     spacing: f64,
+    /// How near (m) to the surface is on it.
+    offset: f64,
     /// Layers along each axis.
     counts: [i64; 3],
 }
@@ -32,7 +34,7 @@ impl Lattice {
         let edges = (bounds.max - bounds.min).to_array();
         // half a layer more or less is no matter for rounding
         let counts = edges.map(|e| ((e / spacing + 0.5 + 1e-9).floor() as i64).max(1));
-        Self { spacing, counts }
+        Self { spacing, offset: ON_SURFACE * spacing.min(bounds.size()), counts }
     }
 
     /// Coordinate of a layer (m).
@@ -97,7 +99,7 @@ fn crossing([a, b, c]: [DVec3; 3], foot: DVec2) -> Option<(i8, f64)> {
 /// Adds all crossings of a triangle with the lines through the lattice's columns.
 fn add_crossings(found: &mut Vec<Crossing>, lattice: &Lattice, triangle: [DVec3; 3]) {
     let [a, b, c] = triangle;
-    let offset = ON_SURFACE * lattice.spacing;
+    let offset = lattice.offset;
     let rows = lattice.layers(1, a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
     for row in rows {
         let y = lattice.at(1, row);
@@ -138,7 +140,7 @@ fn extent_of_row(triangle: [DVec3; 3], y: f64, offset: f64) -> Option<(f64, f64)
 fn fill_column(points: &mut Vec<DVec3>, lattice: &Lattice, column: &[Crossing]) {
     let Some(&Crossing { column: [row, layer], .. }) = column.first() else { return };
     let (x, y) = (lattice.at(0, layer), lattice.at(1, row));
-    let offset = ON_SURFACE * lattice.spacing;
+    let offset = lattice.offset;
     let mut counts = [0i64; LINES.len()];
     for pair in column.windows(2) {
         counts[usize::from(pair[0].line)] += i64::from(pair[0].sign);
@@ -177,7 +179,7 @@ fn fill(mesh: &Mesh, bounds: &Bounds, spacing: f64) -> Vec<DVec3> {
 }
 
 /// Refuses before any work what would take too many points or lines.
-fn check_size(mesh: &Mesh, volume: f64, spacing: f64) -> Result<(), SampleError> {
+fn check_size(mesh: &Mesh, volume: f64, spacing: f64, size: f64) -> Result<(), SampleError> {
     // the shadow along z, in units of the spacing, tells how many lines cross the mesh
     let (mut shadow, mut rows) = (0.0, 0.0);
     for corners in mesh.triangles.iter().filter_map(|&t| mesh.corners(t)) {
@@ -185,22 +187,23 @@ fn check_size(mesh: &Mesh, volume: f64, spacing: f64) -> Result<(), SampleError>
         shadow += 0.25 * (b - a).cross(c - a).z.abs();
         rows += 0.05 * (a.y.max(b.y).max(c.y) - a.y.min(b.y).min(c.y));
     }
-    affordable(spacing, volume / spacing / spacing / spacing, 3.0)?;
-    affordable(spacing, shadow, 2.0)?;
-    affordable(spacing, rows, 1.0)
+    affordable(spacing, volume / spacing / spacing / spacing, 3.0, size)?;
+    affordable(spacing, shadow, 2.0, size)?;
+    affordable(spacing, rows, 1.0, size)
 }
 
 /// The points inside the mesh of a cubic lattice.
 pub(super) fn volume(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleError> {
     let volume = mesh.solid_integrals().map_err(SampleError::Open)?.measure;
     let Some(bounds) = mesh.bounds() else { return Err(SampleError::NoSurface) };
-    check_size(mesh, volume, spacing)?;
+    let size = bounds.size();
+    check_size(mesh, volume, spacing, size)?;
 
     let mut points = fill(mesh, &bounds, spacing);
     if points.is_empty() {
         // the centre of the bounds may lie outside a bent mesh: look for a spacing that finds its inside
-        let mut finer = 0.5 * spacing.min(bounds.size());
-        while check_size(mesh, volume, finer).is_ok() {
+        let mut finer = 0.5 * spacing.min(size);
+        while check_size(mesh, volume, finer, size).is_ok() {
             if !fill(mesh, &bounds, finer).is_empty() {
                 return Err(SampleError::NoPoints { spacing, would_do: Some(finer) });
             }
