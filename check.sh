@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# The checks that a change must pass; the same for a person and for CI.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+say() { printf '\n== %s\n' "$1"; }
+
+say "format"
+cargo fmt --all --check
+
+say "lints"
+cargo clippy --workspace --all-targets --locked -- -D warnings
+
+say "tests (the README's command)"
+cargo test --locked
+
+say "tests of the cat's modeller, and the cat as it would model it again"
+cargo test --release -p tumble-modeller --locked
+
+say "documentation"
+RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+
+say "every built-in scene"
+cargo build --release --locked
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+for scene in $(target/release/tumble scenes | awk '{ print $1 }'); do
+    target/release/tumble run "$scene" --out "$out/$scene"
+done
+
+say "all checks passed"
