@@ -35,7 +35,8 @@ fn ball(radius: f64, count: u32) -> Mesh {
 fn brick(half: DVec3) -> Mesh {
     let sign = |bit: u32| if bit == 0 { -1.0 } else { 1.0 };
     let corner = |i: u32| half * DVec3::new(sign(i & 1), sign(i & 2), sign(i & 4));
-    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let quads =
+        [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let halves = |q: [u32; 4]| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]];
     ((0..8).map(corner).collect(), quads.into_iter().flat_map(halves).collect())
 }
@@ -119,7 +120,8 @@ struct Sample<'a> {
 
 fn draw(folder: &Path, sample: &Sample, size: (u32, u32)) -> Result<(), Box<dyn Error>> {
     let names: Vec<String> = (1..=sample.meshes.len()).map(|i| format!("body {i}")).collect();
-    let body = |(mesh, name): (&&'_ Mesh, &'_ String)| (mesh.0.clone(), mesh.1.clone(), name.clone());
+    let body =
+        |(mesh, name): (&&'_ Mesh, &'_ String)| (mesh.0.clone(), mesh.1.clone(), name.clone());
     let owned: Vec<_> = sample.meshes.iter().zip(&names).map(body).collect();
     let bodies: Vec<PictureBody> = owned
         .iter()
@@ -207,24 +209,103 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let one = |motion: &Throw, time, count| together(&[motion.frames(time, count)]);
     let sample = |name, title, meshes, boundary, frames| Sample {
-        name, title, up: y, meshes, boundary, frames,
+        name,
+        title,
+        up: y,
+        meshes,
+        boundary,
+        frames,
     };
     let bounce = throw(1.0, velocity, spin, 0.22);
     let samples = [
-        sample("box", "a mesh in an open box", vec![&thrown], vec![open_box(1.0)], one(&bounce, 3.0, 300)),
-        sample("short", "a mesh in an open box", vec![&thrown], vec![open_box(1.0)], one(&bounce, 0.8, 80)),
-        sample("point", "a point", vec![&point], vec![open_box(1.0)], one(&throw(1.0, velocity, spin, 0.0), 1.2, 200)),
-        sample("crowd", "two hundred balls", vec![&small; 200], vec![open_box(1.0)], together(&crowd)),
-        sample("tall", "out through the top", vec![&thrown], vec![open_box(1.0)], one(&throw(1.0, DVec3::new(0.3, 9.0, 0.2), spin, 0.25), 2.4, 240)),
-        sample("plane", "bricks and a cloud on a plane", vec![&brick, &cloud, &brick], flat(y), together(&[over_plane(0.0, 3.0).frames(1.5, 150), over_plane(-0.9, 4.0).frames(1.5, 150), over_plane(1.2, 2.0).frames(1.5, 150)])),
-        Sample { up: DVec3::Z, ..sample("z-up", "gravity along −z", vec![&brick], flat(DVec3::Z), one(&Throw { radius: 0.15, ..tilted }, 1.6, 160)) },
-        sample("free", "free flight", vec![&brick, &thrown], Vec::new(), together(&[free(DVec3::new(1.0, 0.2, 0.0)).frames(3.0, 100), free(DVec3::new(-0.6, -0.1, 0.8)).frames(3.0, 100)])),
-        sample("start", "only the start", vec![&thrown], vec![open_box(1.0)], one(&bounce, 0.01, 1)[..1].to_vec()),
-        sample("million", "a million vertices", vec![&huge], vec![open_box(1.0)], one(&throw(1.0, velocity, spin, 0.4), 1.0, 100)),
+        sample(
+            "box",
+            "a mesh in an open box",
+            vec![&thrown],
+            vec![open_box(1.0)],
+            one(&bounce, 3.0, 300),
+        ),
+        sample(
+            "short",
+            "a mesh in an open box",
+            vec![&thrown],
+            vec![open_box(1.0)],
+            one(&bounce, 0.8, 80),
+        ),
+        sample(
+            "point",
+            "a point",
+            vec![&point],
+            vec![open_box(1.0)],
+            one(&throw(1.0, velocity, spin, 0.0), 1.2, 200),
+        ),
+        sample(
+            "crowd",
+            "two hundred balls",
+            vec![&small; 200],
+            vec![open_box(1.0)],
+            together(&crowd),
+        ),
+        sample(
+            "tall",
+            "out through the top",
+            vec![&thrown],
+            vec![open_box(1.0)],
+            one(&throw(1.0, DVec3::new(0.3, 9.0, 0.2), spin, 0.25), 2.4, 240),
+        ),
+        sample(
+            "plane",
+            "bricks and a cloud on a plane",
+            vec![&brick, &cloud, &brick],
+            flat(y),
+            together(&[
+                over_plane(0.0, 3.0).frames(1.5, 150),
+                over_plane(-0.9, 4.0).frames(1.5, 150),
+                over_plane(1.2, 2.0).frames(1.5, 150),
+            ]),
+        ),
+        Sample {
+            up: DVec3::Z,
+            ..sample(
+                "z-up",
+                "gravity along −z",
+                vec![&brick],
+                flat(DVec3::Z),
+                one(&Throw { radius: 0.15, ..tilted }, 1.6, 160),
+            )
+        },
+        sample(
+            "free",
+            "free flight",
+            vec![&brick, &thrown],
+            Vec::new(),
+            together(&[
+                free(DVec3::new(1.0, 0.2, 0.0)).frames(3.0, 100),
+                Throw { start: DVec3::new(2.0, 0.8, -0.6), ..free(DVec3::new(-0.6, -0.1, 0.8)) }
+                    .frames(3.0, 100),
+            ]),
+        ),
+        sample(
+            "start",
+            "only the start",
+            vec![&thrown],
+            vec![open_box(1.0)],
+            one(&bounce, 0.01, 1)[..1].to_vec(),
+        ),
+        sample(
+            "million",
+            "a million vertices",
+            vec![&huge],
+            vec![open_box(1.0)],
+            one(&throw(1.0, velocity, spin, 0.4), 1.0, 100),
+        ),
     ];
     for sample in &samples {
         draw(folder, sample, DEFAULT_SIZE)?;
     }
-    let little = Sample { name: "little", ..sample("", "little", vec![&thrown], vec![open_box(1.0)], one(&bounce, 0.8, 80)) };
+    let little = Sample {
+        name: "little",
+        ..sample("", "little", vec![&thrown], vec![open_box(1.0)], one(&bounce, 0.8, 80))
+    };
     draw(folder, &little, (480, 300))
 }

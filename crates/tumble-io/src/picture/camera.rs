@@ -72,8 +72,7 @@ impl Camera {
     /// Looks at `points` from an angle to the side (rad), as near as they all fit the viewport.
     pub fn framing(points: &[DVec3], up: DVec3, azimuth: f64, view: Viewport) -> Self {
         let (east, up, south) = level_frame(up);
-        let turn = DQuat::from_axis_angle(up, azimuth)
-            * DQuat::from_axis_angle(east, -ELEVATION);
+        let turn = DQuat::from_axis_angle(up, azimuth) * DQuat::from_axis_angle(east, -ELEVATION);
         let (right, back) = (turn * east, turn * south);
         let (centre, scale) = bounds(points);
         let focal = 0.5 * view.height / HALF_VIEW;

@@ -78,10 +78,11 @@ impl<'a> Studio<'a> {
         let camera = best_view(picture, &radii, up, view);
         let pixel = camera.pixel_length();
         let bodies = picture.bodies.iter().zip(&radii);
-        let figures = bodies.map(|(body, &radius)| Figure::new(body, radius, pixel)).collect();
+        let figures: Vec<Figure> =
+            bodies.map(|(body, &radius)| Figure::new(body, radius, pixel)).collect();
         let (surfaces, edges) = surface::build(picture.boundary, &camera, up);
         let paths = (0..radii.len()).map(|body| path(picture, body, &camera)).collect();
-        let chosen = moments::choose(picture.frames, &radii, camera.scale());
+        let chosen = moments::choose(picture.frames, &figures, &camera);
         let picture = *picture;
         Self { picture, up, width, height, camera, figures, surfaces, edges, paths, chosen }
     }
@@ -93,12 +94,13 @@ impl<'a> Studio<'a> {
         let moment = |(i, &frame): (usize, &usize)| {
             let age = if count > 1 { 1.0 - i as f32 / (count - 1) as f32 } else { 0.0 };
             let (paleness, alpha) =
-                if i + 1 == count { (0.0, 255) } else { (0.18 + 0.40 * age, 215) };
+                if i + 1 == count { (0.0, 255) } else { (0.14 + 0.46 * age, 215) };
             Moment { frame, paleness, alpha }
         };
         let moments: Vec<Moment> = self.chosen.iter().enumerate().map(moment).collect();
         let mut image = self.draw(&moments);
-        legend::motion(&mut image, &self.picture, &moments, &self.camera, self.grid());
+        let outlines = self.outlines(&moments);
+        legend::motion(&mut image, &self.picture, &moments, &outlines, &self.camera, self.grid());
         image
     }
 
@@ -125,17 +127,53 @@ impl<'a> Studio<'a> {
 
     fn draw(&self, moments: &[Moment]) -> Image {
         let surfaces = self.shaded_surfaces(moments);
-        let mut layers = self.layers(moments);
+        let threads = std::thread::available_parallelism().map_or(1, usize::from).min(4);
+        let part = |thread| self.sum_samples(thread, threads, moments, &surfaces);
         let mut sums = vec![[0u16; 3]; self.width as usize * self.height as usize];
-        for (x, y) in SAMPLES {
-            let camera = self.camera.shifted(x, y);
-            layers.iter_mut().for_each(Layer::clear);
-            self.draw_sample(&camera, moments, &surfaces, &mut layers);
-            self.add_up(&layers, &mut sums);
-        }
+        std::thread::scope(|scope| {
+            let part = &part;
+            let others: Vec<_> =
+                (1..threads).map(|thread| scope.spawn(move || part(thread))).collect();
+            let others = others.into_iter().enumerate();
+            let own = part(0);
+            // whole numbers: the sum does not depend on how many threads share it
+            add(&mut sums, &own);
+            for (index, other) in others {
+                add(&mut sums, &other.join().unwrap_or_else(|_| part(index + 1)));
+            }
+        });
         let mean = |sum: u16| ((usize::from(sum) + SAMPLES.len() / 2) / SAMPLES.len()) as u8;
         let pixels = sums.iter().flat_map(|rgb| rgb.map(mean)).collect();
         Image { width: self.width, height: self.height, pixels }
+    }
+
+    /// The sum of the samples that fall to one of several threads.
+    fn sum_samples(
+        &self,
+        thread: usize,
+        threads: usize,
+        moments: &[Moment],
+        surfaces: &[Vec<Surface>],
+    ) -> Vec<[u16; 3]> {
+        let mut layers = self.layers(moments);
+        let mut sums = vec![[0u16; 3]; self.width as usize * self.height as usize];
+        for &(x, y) in SAMPLES.iter().skip(thread).step_by(threads) {
+            let camera = self.camera.shifted(x, y);
+            layers.iter_mut().for_each(Layer::clear);
+            self.draw_sample(&camera, moments, surfaces, &mut layers);
+            self.add_up(&layers, &mut sums);
+        }
+        sums
+    }
+
+    /// Where the only body of a picture is at each of the times.
+    fn outlines(&self, moments: &[Moment]) -> Vec<[i32; 4]> {
+        let [figure] = self.figures.as_slice() else { return Vec::new() };
+        let at = |moment: &Moment| {
+            let pose = self.picture.frames.get(moment.frame)?.pose(0)?;
+            figure.outline(&pose, &self.camera)
+        };
+        moments.iter().map(|moment| at(moment).unwrap_or([i32::MIN / 4; 4])).collect()
     }
 
     /// The surfaces with the shadows of the bodies at these times.
@@ -180,12 +218,7 @@ impl<'a> Studio<'a> {
             let Some(one) = pose.and_then(|pose| figure.reach(&pose, &self.camera)) else {
                 continue;
             };
-            all = [
-                all[0].min(one[0]),
-                all[1].min(one[1]),
-                all[2].max(one[2]),
-                all[3].max(one[3]),
-            ];
+            all = [all[0].min(one[0]), all[1].min(one[1]), all[2].max(one[2]), all[3].max(one[3])];
         }
         all
     }
@@ -248,8 +281,8 @@ impl<'a> Studio<'a> {
         let (width, alpha) = match self.paths.len() {
             0..=3 => (3.0, 255),
             4..=8 => (2.0, 255),
-            9..=40 => (1.5, 150),
-            _ => (1.2, 80),
+            9..=40 => (1.5, 140),
+            _ => (1.2, 50),
         };
         for (body, path) in self.paths.iter().enumerate() {
             let [r, g, b] = colour(body).map(|c| (0.88 * c) as u8);
@@ -300,6 +333,12 @@ impl<'a> Studio<'a> {
     }
 }
 
+fn add(sums: &mut [[u16; 3]], more: &[[u16; 3]]) {
+    for (sum, more) in sums.iter_mut().flatten().zip(more.iter().flatten()) {
+        *sum += more;
+    }
+}
+
 /// The path of a body's centre of mass, as fine as can be seen.
 fn path(picture: &MotionPicture, body: usize, camera: &Camera) -> Path {
     let mut path = Path::new();
@@ -324,7 +363,7 @@ fn landmarks(picture: &MotionPicture, radii: &[f64], up: DVec3) -> (Vec<DVec3>, 
     let sparse = (picture.frames.len() * radii.len() / 300).max(1);
     let last = picture.frames.len().saturating_sub(1);
     for (index, frame) in picture.frames.iter().enumerate() {
-        if index % stride != 0 && index != last {
+        if !index.is_multiple_of(stride) && index != last {
             continue;
         }
         for (body, &radius) in radii.iter().enumerate() {
@@ -332,7 +371,7 @@ fn landmarks(picture: &MotionPicture, radii: &[f64], up: DVec3) -> (Vec<DVec3>, 
             let (u, v) = up.any_orthonormal_pair();
             let around = [u, -u, v, -v, up, -up];
             points.extend(around.map(|way| pose.position + way * radius));
-            if (index * radii.len() + body) % sparse == 0 {
+            if (index * radii.len() + body).is_multiple_of(sparse) {
                 centres.push(pose.position);
             }
         }

@@ -49,9 +49,9 @@ mod moments;
 mod raster;
 mod shadow;
 mod surface;
-mod text;
 #[cfg(test)]
 mod tests;
+mod text;
 
 pub use compose::Studio;
 use glam::{DQuat, DVec3};
