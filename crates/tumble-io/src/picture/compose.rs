@@ -3,6 +3,7 @@
 use super::camera::{Camera, Viewport};
 use super::figure::{self, Figure, Light, Paint};
 use super::image::Image;
+use super::legend::Trail;
 use super::raster::Layer;
 use super::surface::{self, Edge, Surface};
 use super::{MotionPicture, drawable, legend, moments};
@@ -99,8 +100,8 @@ impl<'a> Studio<'a> {
         };
         let moments: Vec<Moment> = self.chosen.iter().enumerate().map(moment).collect();
         let mut image = self.draw(&moments);
-        let outlines = self.outlines(&moments);
-        legend::motion(&mut image, &self.picture, &moments, &outlines, &self.camera, self.grid());
+        let trail = self.trail(&moments);
+        legend::motion(&mut image, &self.picture, &moments, &trail, &self.camera, self.grid());
         image
     }
 
@@ -118,6 +119,12 @@ impl<'a> Studio<'a> {
     #[must_use]
     pub fn pixel_of(&self, point: DVec3) -> Option<(f64, f64)> {
         self.camera.project(point).map(|at| (f64::from(at.x), f64::from(at.y)))
+    }
+
+    /// The direction from the middle of the pictures to the viewer, of length one.
+    #[must_use]
+    pub fn toward_viewer(&self) -> DVec3 {
+        (self.camera.eye() - self.camera.centre()).normalize_or(DVec3::Z)
     }
 
     /// The distance of the lines on the floor (m), if there are any.
@@ -166,14 +173,18 @@ impl<'a> Studio<'a> {
         sums
     }
 
-    /// Where the only body of a picture is at each of the times.
-    fn outlines(&self, moments: &[Moment]) -> Vec<[i32; 4]> {
-        let [figure] = self.figures.as_slice() else { return Vec::new() };
+    /// Where the only body of a picture is at each of the times, and its path.
+    fn trail(&self, moments: &[Moment]) -> Trail {
+        let ([figure], [path]) = (self.figures.as_slice(), self.paths.as_slice()) else {
+            return Trail::default();
+        };
         let at = |moment: &Moment| {
             let pose = self.picture.frames.get(moment.frame)?.pose(0)?;
             figure.outline(&pose, &self.camera)
         };
-        moments.iter().map(|moment| at(moment).unwrap_or([i32::MIN / 4; 4])).collect()
+        let outlines = moments.iter().map(|m| at(m).unwrap_or([i32::MIN / 4; 4])).collect();
+        let places = path.iter().filter_map(|(_, point)| self.camera.project(*point));
+        Trail { outlines, path: places.map(|at| (at.x as i32, at.y as i32)).collect() }
     }
 
     /// The surfaces with the shadows of the bodies at these times.

@@ -18,6 +18,15 @@ struct Margins {
     bottom: i32,
 }
 
+/// Where the only body of a picture is, in pixels: what words should not cover.
+#[derive(Debug, Default)]
+pub(super) struct Trail {
+    /// The rectangle of the body at each time.
+    pub outlines: Vec<[i32; 4]>,
+    /// Points on its path.
+    pub path: Vec<(i32, i32)>,
+}
+
 fn margins(width: u32, height: u32) -> Option<Margins> {
     if width < 320 || height < 200 {
         return None;
@@ -46,7 +55,7 @@ pub(super) fn motion(
     image: &mut Image,
     picture: &MotionPicture,
     moments: &[Moment],
-    outlines: &[[i32; 4]],
+    trail: &Trail,
     camera: &Camera,
     grid: Option<f64>,
 ) {
@@ -58,7 +67,7 @@ pub(super) fn motion(
     title(image, picture, &duration(picture, step), m, names_left);
     swatches(image, picture, moments, &labels, m);
     if picture.bodies.len() == 1 && moments.len() > 1 {
-        time_marks(image, outlines, &labels, m);
+        time_marks(image, trail, &labels, m);
     }
     signs(image, camera, grid, m);
 }
@@ -174,7 +183,8 @@ fn swatches(
 }
 
 /// Times beside the bodies, where there is room between them.
-fn time_marks(image: &mut Image, outlines: &[[i32; 4]], labels: &[String], m: Margins) {
+fn time_marks(image: &mut Image, trail: &Trail, labels: &[String], m: Margins) {
+    let Trail { outlines, path } = trail;
     let mut taken: Vec<[i32; 4]> = Vec::new();
     let last = outlines.len().saturating_sub(1);
     for i in [last].into_iter().chain(0..last) {
@@ -183,31 +193,27 @@ fn time_marks(image: &mut Image, outlines: &[[i32; 4]], labels: &[String], m: Ma
         };
         let (width, height) = (m.text.width(label), m.text.height());
         let (x, y) = ((x0 + x1 - width) / 2, (y0 + y1 - height) / 2);
-        let places = [
-            (x, y0 - height - 2),
-            (x1 + 8, y),
-            (x0 - 8 - width, y),
-            (x, y1 + 2),
-            (x1, y0),
-            (x0 - width, y0),
-        ];
+        let (left, right, top, bottom) = (x0 - 8 - width, x1 + 8, y0 - height - 4, y1 + 4);
+        let places = [(x, top), (right, y), (left, y), (x, bottom)];
+        let corners = [(right, top), (left, top), (right, bottom), (left, bottom)];
         let frame = |(left, top): (i32, i32)| [left, top, left + width, top + height];
-        let inside = |own: &[i32; 4]| {
+        let usable = |own: &[i32; 4]| {
+            let wide = [own[0] - 8, own[1] - 2, own[2] + 8, own[3] + 2];
             own[0] >= m.side
                 && own[1] >= m.top
                 && own[2] <= image.width as i32 - m.side
                 && own[3] <= image.height as i32 - m.bottom
+                && !taken.iter().any(|other| overlap(wide, *other))
         };
-        let apart = |own: &[i32; 4]| {
-            let wide = [own[0] - 8, own[1] - 2, own[2] + 8, own[3] + 2];
-            !taken.iter().any(|other| overlap(wide, *other))
+        // best beside all bodies and off the path; never over other words
+        let hidden = |own: &[i32; 4]| {
+            let others = (0..outlines.len()).filter(|&other| other != i);
+            let bodies = others.filter(|&other| overlap(*own, outlines[other])).count();
+            let on_path = |p: &&(i32, i32)| overlap(*own, [p.0 - 3, p.1 - 3, p.0 + 3, p.1 + 3]);
+            40 * bodies + path.iter().filter(on_path).count()
         };
-        // beside all bodies if that can be, or else at least not over other words
-        let clear = |own: &[i32; 4]| {
-            !(0..outlines.len()).any(|other| other != i && overlap(*own, outlines[other]))
-        };
-        let usable = || places.into_iter().map(frame).filter(inside).filter(apart);
-        let Some(own) = usable().find(clear).or_else(|| usable().next()) else { continue };
+        let all = places.into_iter().chain(corners).map(frame).filter(usable);
+        let Some(own) = all.min_by_key(hidden) else { continue };
         m.text.write_with_halo(image, (own[0], own[1]), label, INK);
         taken.push(own);
     }

@@ -65,6 +65,7 @@ impl Axis {
         let digits = (tick.abs() / (span / 15.0)).log10().ceil().clamp(1.0, 9.0) as usize;
         let text = format!("{:.*e}", digits, tick * self.unit);
         match text.split_once('e') {
+            Some((mantissa, "0")) => trimmed(mantissa),
             Some((mantissa, exponent)) => format!("{}e{exponent}", trimmed(mantissa)),
             None => text,
         }

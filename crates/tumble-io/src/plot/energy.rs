@@ -120,8 +120,8 @@ fn write_title(head: &Area, title: &str) -> Result<(), PlotError> {
     // letters that XML does not allow would make the file unreadable
     let allowed = |c: &char| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}');
     let title: String = title.chars().filter(allowed).take(90).collect();
-    let at = ((NUMBERS * FINE) as i32, (24 * FINE) as i32);
-    let style = font(20).pos(Pos::new(HPos::Left, VPos::Center));
+    let at = (((NUMBERS + 12) * FINE) as i32, (24 * FINE) as i32);
+    let style = font(24).pos(Pos::new(HPos::Left, VPos::Center));
     head.draw(&Text::new(title, at, style)).map_err(failed)
 }
 
@@ -140,9 +140,11 @@ fn panel(
     let label = |tick: &f64| if is_residual { axis.scientific(*tick) } else { axis.label(*tick) };
     let mut chart = ChartBuilder::on(&plot)
         .margin_top(8 * FINE)
+        .margin_left(12 * FINE)
+        .margin_bottom(if is_residual { 8 * FINE } else { 0 })
         .margin_right(14 * FINE)
         .set_label_area_size(LabelAreaPosition::Left, NUMBERS * FINE)
-        .set_label_area_size(LabelAreaPosition::Bottom, 44 * FINE)
+        .set_label_area_size(LabelAreaPosition::Bottom, if is_residual { 44 } else { 26 } * FINE)
         .build_cartesian_2d(time.low..time.high, axis.low..axis.high)
         .map_err(failed)?;
     chart
@@ -155,7 +157,7 @@ fn panel(
         .y_labels(if is_residual { 5 } else { 9 })
         .x_label_formatter(&|tick| time.label(*tick))
         .y_label_formatter(&label)
-        .x_desc("time (s)")
+        .x_desc(if is_residual { "time (s)" } else { "" })
         .y_desc(name)
         .label_style(font(13))
         .axis_desc_style(font(14))
