@@ -281,7 +281,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             Vec::new(),
             together(&[
                 free(DVec3::new(1.0, 0.2, 0.0)).frames(3.0, 100),
-                free(DVec3::new(-0.6, -0.1, 0.8)).frames(3.0, 100),
+                Throw { start: DVec3::new(2.0, 0.8, -0.6), ..free(DVec3::new(-0.6, -0.1, 0.8)) }
+                    .frames(3.0, 100),
             ]),
         ),
         sample(

@@ -3,6 +3,7 @@
 use super::camera::{Camera, Viewport};
 use super::figure::{self, Figure, Light, Paint};
 use super::image::Image;
+use super::legend::Trail;
 use super::raster::Layer;
 use super::surface::{self, Edge, Surface};
 use super::{MotionPicture, drawable, legend, moments};
@@ -78,10 +79,11 @@ impl<'a> Studio<'a> {
         let camera = best_view(picture, &radii, up, view);
         let pixel = camera.pixel_length();
         let bodies = picture.bodies.iter().zip(&radii);
-        let figures = bodies.map(|(body, &radius)| Figure::new(body, radius, pixel)).collect();
+        let figures: Vec<Figure> =
+            bodies.map(|(body, &radius)| Figure::new(body, radius, pixel)).collect();
         let (surfaces, edges) = surface::build(picture.boundary, &camera, up);
         let paths = (0..radii.len()).map(|body| path(picture, body, &camera)).collect();
-        let chosen = moments::choose(picture.frames, &radii, camera.scale());
+        let chosen = moments::choose(picture.frames, &figures, &camera);
         let picture = *picture;
         Self { picture, up, width, height, camera, figures, surfaces, edges, paths, chosen }
     }
@@ -93,12 +95,13 @@ impl<'a> Studio<'a> {
         let moment = |(i, &frame): (usize, &usize)| {
             let age = if count > 1 { 1.0 - i as f32 / (count - 1) as f32 } else { 0.0 };
             let (paleness, alpha) =
-                if i + 1 == count { (0.0, 255) } else { (0.18 + 0.40 * age, 215) };
+                if i + 1 == count { (0.0, 255) } else { (0.14 + 0.46 * age, 215) };
             Moment { frame, paleness, alpha }
         };
         let moments: Vec<Moment> = self.chosen.iter().enumerate().map(moment).collect();
         let mut image = self.draw(&moments);
-        legend::motion(&mut image, &self.picture, &moments, &self.camera, self.grid());
+        let trail = self.trail(&moments);
+        legend::motion(&mut image, &self.picture, &moments, &trail, &self.camera, self.grid());
         image
     }
 
@@ -118,6 +121,12 @@ impl<'a> Studio<'a> {
         self.camera.project(point).map(|at| (f64::from(at.x), f64::from(at.y)))
     }
 
+    /// The direction from the middle of the pictures to the viewer, of length one.
+    #[must_use]
+    pub fn toward_viewer(&self) -> DVec3 {
+        (self.camera.eye() - self.camera.centre()).normalize_or(DVec3::Z)
+    }
+
     /// The distance of the lines on the floor (m), if there are any.
     fn grid(&self) -> Option<f64> {
         self.surfaces.iter().flatten().map(|surface| surface.grid).find(|&grid| grid > 0.0)
@@ -125,17 +134,57 @@ impl<'a> Studio<'a> {
 
     fn draw(&self, moments: &[Moment]) -> Image {
         let surfaces = self.shaded_surfaces(moments);
-        let mut layers = self.layers(moments);
+        let threads = std::thread::available_parallelism().map_or(1, usize::from).min(4);
+        let part = |thread| self.sum_samples(thread, threads, moments, &surfaces);
         let mut sums = vec![[0u16; 3]; self.width as usize * self.height as usize];
-        for (x, y) in SAMPLES {
-            let camera = self.camera.shifted(x, y);
-            layers.iter_mut().for_each(Layer::clear);
-            self.draw_sample(&camera, moments, &surfaces, &mut layers);
-            self.add_up(&layers, &mut sums);
-        }
+        std::thread::scope(|scope| {
+            let part = &part;
+            let others: Vec<_> =
+                (1..threads).map(|thread| scope.spawn(move || part(thread))).collect();
+            let others = others.into_iter().enumerate();
+            let own = part(0);
+            // whole numbers: the sum does not depend on how many threads share it
+            add(&mut sums, &own);
+            for (index, other) in others {
+                add(&mut sums, &other.join().unwrap_or_else(|_| part(index + 1)));
+            }
+        });
         let mean = |sum: u16| ((usize::from(sum) + SAMPLES.len() / 2) / SAMPLES.len()) as u8;
         let pixels = sums.iter().flat_map(|rgb| rgb.map(mean)).collect();
         Image { width: self.width, height: self.height, pixels }
+    }
+
+    /// The sum of the samples that fall to one of several threads.
+    fn sum_samples(
+        &self,
+        thread: usize,
+        threads: usize,
+        moments: &[Moment],
+        surfaces: &[Vec<Surface>],
+    ) -> Vec<[u16; 3]> {
+        let mut layers = self.layers(moments);
+        let mut sums = vec![[0u16; 3]; self.width as usize * self.height as usize];
+        for &(x, y) in SAMPLES.iter().skip(thread).step_by(threads) {
+            let camera = self.camera.shifted(x, y);
+            layers.iter_mut().for_each(Layer::clear);
+            self.draw_sample(&camera, moments, surfaces, &mut layers);
+            self.add_up(&layers, &mut sums);
+        }
+        sums
+    }
+
+    /// Where the only body of a picture is at each of the times, and its path.
+    fn trail(&self, moments: &[Moment]) -> Trail {
+        let ([figure], [path]) = (self.figures.as_slice(), self.paths.as_slice()) else {
+            return Trail::default();
+        };
+        let at = |moment: &Moment| {
+            let pose = self.picture.frames.get(moment.frame)?.pose(0)?;
+            figure.outline(&pose, &self.camera)
+        };
+        let outlines = moments.iter().map(|m| at(m).unwrap_or([i32::MIN / 4; 4])).collect();
+        let places = path.iter().filter_map(|(_, point)| self.camera.project(*point));
+        Trail { outlines, path: places.map(|at| (at.x as i32, at.y as i32)).collect() }
     }
 
     /// The surfaces with the shadows of the bodies at these times.
@@ -243,8 +292,8 @@ impl<'a> Studio<'a> {
         let (width, alpha) = match self.paths.len() {
             0..=3 => (3.0, 255),
             4..=8 => (2.0, 255),
-            9..=40 => (1.5, 150),
-            _ => (1.2, 80),
+            9..=40 => (1.5, 140),
+            _ => (1.2, 50),
         };
         for (body, path) in self.paths.iter().enumerate() {
             let [r, g, b] = colour(body).map(|c| (0.88 * c) as u8);
@@ -295,6 +344,12 @@ impl<'a> Studio<'a> {
     }
 }
 
+fn add(sums: &mut [[u16; 3]], more: &[[u16; 3]]) {
+    for (sum, more) in sums.iter_mut().flatten().zip(more.iter().flatten()) {
+        *sum += more;
+    }
+}
+
 /// The path of a body's centre of mass, as fine as can be seen.
 fn path(picture: &MotionPicture, body: usize, camera: &Camera) -> Path {
     let mut path = Path::new();
@@ -319,7 +374,7 @@ fn landmarks(picture: &MotionPicture, radii: &[f64], up: DVec3) -> (Vec<DVec3>, 
     let sparse = (picture.frames.len() * radii.len() / 300).max(1);
     let last = picture.frames.len().saturating_sub(1);
     for (index, frame) in picture.frames.iter().enumerate() {
-        if index % stride != 0 && index != last {
+        if !index.is_multiple_of(stride) && index != last {
             continue;
         }
         for (body, &radius) in radii.iter().enumerate() {
@@ -327,7 +382,7 @@ fn landmarks(picture: &MotionPicture, radii: &[f64], up: DVec3) -> (Vec<DVec3>, 
             let (u, v) = up.any_orthonormal_pair();
             let around = [u, -u, v, -v, up, -up];
             points.extend(around.map(|way| pose.position + way * radius));
-            if (index * radii.len() + body) % sparse == 0 {
+            if (index * radii.len() + body).is_multiple_of(sparse) {
                 centres.push(pose.position);
             }
         }

@@ -11,7 +11,7 @@ const MOST_VERTICES: usize = 120_000;
 /// Faces that meet at less than this angle (its cosine) are shaded as one smooth surface.
 const CREASE: f32 = 0.75;
 /// A body is drawn at least this many pixels in radius, so that none gets lost.
-const LEAST_RADIUS: f32 = 4.0;
+pub(super) const LEAST_RADIUS: f32 = 6.0;
 
 /// How the light falls, in the frame of the picture: right, up, to the viewer.
 pub(super) struct Light {
@@ -31,7 +31,7 @@ impl Light {
     /// The colour of a surface with this normal, before any paling.
     fn shade(&self, colour: [f32; 3], normal: Vec3) -> [f32; 3] {
         let lambert = normal.dot(self.key).max(0.0);
-        let level = 0.50 + 0.13 * normal.dot(self.sky) + 0.46 * lambert;
+        let level = 0.60 + 0.13 * normal.dot(self.sky) + 0.40 * lambert;
         let gleam = normal.dot(self.half).max(0.0).powi(28) * 34.0;
         // a darker rim sets a body off against a light background and against its own kind
         let edge = 1.0 - normal.z.clamp(0.0, 1.0);
@@ -70,6 +70,8 @@ pub(super) struct Figure {
     normals: Vec<[Vec3; 3]>,
     /// The distance of the farthest vertex from the centre of mass (m).
     pub radius: f64,
+    /// The root mean square distance of the vertices from the centre of mass (m).
+    pub spread: f64,
     /// The radius of the ball that stands for a vertex (m).
     pub ball: f64,
 }
@@ -87,7 +89,24 @@ impl Figure {
         let normals = corner_normals(&points, &triangles, radius);
         // balls that nearly touch if the vertices are spread over a surface
         let ball = radius * (1.1 / (points.len().max(1) as f64).sqrt()).clamp(0.012, 0.16);
-        Self { points, triangles, normals, radius, ball }
+        let squares: f64 = points.iter().map(|p| p.length_squared()).sum();
+        let spread = (squares / points.len().max(1) as f64).sqrt();
+        Self { points, triangles, normals, radius, spread, ball }
+    }
+
+    /// The rectangle of pixels that the body fills at a pose, near enough to put words beside it.
+    pub fn outline(&self, pose: &Pose, camera: &Camera) -> Option<[i32; 4]> {
+        let centre = camera.project(pose.position)?;
+        let stride = (self.points.len() / 400).max(1);
+        let places = self.points.iter().step_by(stride);
+        let places = places.filter_map(|p| camera.project(pose.position + pose.orientation * *p));
+        let mut low = (centre.x - LEAST_RADIUS, centre.y - LEAST_RADIUS);
+        let mut high = (centre.x + LEAST_RADIUS, centre.y + LEAST_RADIUS);
+        for place in places {
+            low = (low.0.min(place.x), low.1.min(place.y));
+            high = (high.0.max(place.x), high.1.max(place.y));
+        }
+        Some([low.0 as i32, low.1 as i32, high.0 as i32, high.1 as i32])
     }
 
     /// A square of pixels that holds the body wherever it points.

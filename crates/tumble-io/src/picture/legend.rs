@@ -18,13 +18,22 @@ struct Margins {
     bottom: i32,
 }
 
+/// Where the only body of a picture is, in pixels: what words should not cover.
+#[derive(Debug, Default)]
+pub(super) struct Trail {
+    /// The rectangle of the body at each time.
+    pub outlines: Vec<[i32; 4]>,
+    /// Points on its path.
+    pub path: Vec<(i32, i32)>,
+}
+
 fn margins(width: u32, height: u32) -> Option<Margins> {
     if width < 320 || height < 200 {
         return None;
     }
     let unit = (f64::from(width) / 1600.0).min(f64::from(height) / 1000.0);
-    let text = Font::fitting(22.0 * unit, false);
-    let title = Font::fitting(34.0 * unit, true);
+    let text = Font::fitting(25.0 * unit, false);
+    let title = Font::fitting(36.0 * unit, true);
     let side = (34.0 * unit).max(8.0) as i32;
     let top = side + title.height() + text.height() / 2;
     Some(Margins { text, title, side, top, bottom: side + 2 * text.height() })
@@ -46,6 +55,7 @@ pub(super) fn motion(
     image: &mut Image,
     picture: &MotionPicture,
     moments: &[Moment],
+    trail: &Trail,
     camera: &Camera,
     grid: Option<f64>,
 ) {
@@ -57,7 +67,7 @@ pub(super) fn motion(
     title(image, picture, &duration(picture, step), m, names_left);
     swatches(image, picture, moments, &labels, m);
     if picture.bodies.len() == 1 && moments.len() > 1 {
-        time_marks(image, picture, moments, &labels, camera, m);
+        time_marks(image, trail, &labels, m);
     }
     signs(image, camera, grid, m);
 }
@@ -89,7 +99,7 @@ fn duration(picture: &MotionPicture, step: f64) -> String {
     let first = picture.frames.iter().find(finite);
     let last = picture.frames.iter().rev().find(finite);
     match first.zip(last) {
-        Some((a, b)) if b.time > a.time => time(b.time - a.time, step),
+        Some((a, b)) if b.time > a.time => format!("duration {}", time(b.time - a.time, step)),
         _ => String::new(),
     }
 }
@@ -173,41 +183,39 @@ fn swatches(
 }
 
 /// Times beside the bodies, where there is room between them.
-fn time_marks(
-    image: &mut Image,
-    picture: &MotionPicture,
-    moments: &[Moment],
-    labels: &[String],
-    camera: &Camera,
-    m: Margins,
-) {
-    let radius = super::figure::radius(&picture.bodies[0]);
+fn time_marks(image: &mut Image, trail: &Trail, labels: &[String], m: Margins) {
+    let Trail { outlines, path } = trail;
     let mut taken: Vec<[i32; 4]> = Vec::new();
-    let ends = [moments.len() - 1, 0];
-    for i in ends.into_iter().chain(1..moments.len() - 1) {
-        let pose = picture.frames[moments[i].frame].pose(0);
-        let Some(at) = pose.and_then(|pose| camera.project(pose.position)) else { continue };
-        let size = camera.pixels(radius, at).max(6.0) as i32;
-        let (width, height) = (m.text.width(&labels[i]), m.text.height());
-        let (x, y) = (at.x as i32, at.y as i32);
-        let places = [
-            (x - width / 2, y - size - height - 4),
-            (x + size + 8, y - height / 2),
-            (x - size - 8 - width, y - height / 2),
-            (x - width / 2, y + size + 4),
-        ];
-        let free = places.into_iter().find(|&(left, top)| {
-            let own = [left - 6, top - 2, left + width + 6, top + height + 2];
-            let inside = own[0] >= m.side
+    let last = outlines.len().saturating_sub(1);
+    for i in [last].into_iter().chain(0..last) {
+        let (Some(&[x0, y0, x1, y1]), Some(label)) = (outlines.get(i), labels.get(i)) else {
+            continue;
+        };
+        let (width, height) = (m.text.width(label), m.text.height());
+        let (x, y) = ((x0 + x1 - width) / 2, (y0 + y1 - height) / 2);
+        let (left, right, top, bottom) = (x0 - 8 - width, x1 + 8, y0 - height - 4, y1 + 4);
+        let places = [(x, top), (right, y), (left, y), (x, bottom)];
+        let corners = [(right, top), (left, top), (right, bottom), (left, bottom)];
+        let frame = |(left, top): (i32, i32)| [left, top, left + width, top + height];
+        let usable = |own: &[i32; 4]| {
+            let wide = [own[0] - 8, own[1] - 2, own[2] + 8, own[3] + 2];
+            own[0] >= m.side
                 && own[1] >= m.top
                 && own[2] <= image.width as i32 - m.side
-                && own[3] <= image.height as i32 - m.bottom;
-            inside && !taken.iter().any(|other| overlap(own, *other))
-        });
-        if let Some((left, top)) = free {
-            m.text.write_with_halo(image, (left, top), &labels[i], INK);
-            taken.push([left, top, left + width, top + height]);
-        }
+                && own[3] <= image.height as i32 - m.bottom
+                && !taken.iter().any(|other| overlap(wide, *other))
+        };
+        // best beside all bodies and off the path; never over other words
+        let hidden = |own: &[i32; 4]| {
+            let others = (0..outlines.len()).filter(|&other| other != i);
+            let bodies = others.filter(|&other| overlap(*own, outlines[other])).count();
+            let on_path = |p: &&(i32, i32)| overlap(*own, [p.0 - 3, p.1 - 3, p.0 + 3, p.1 + 3]);
+            40 * bodies + path.iter().filter(on_path).count()
+        };
+        let all = places.into_iter().chain(corners).map(frame).filter(usable);
+        let Some(own) = all.min_by_key(hidden) else { continue };
+        m.text.write_with_halo(image, (own[0], own[1]), label, INK);
+        taken.push(own);
     }
 }
 

@@ -1,48 +1,62 @@
 //! Which times a picture shows.
 
 use super::Frame;
+use super::camera::Camera;
+use super::figure::{Figure, LEAST_RADIUS};
 
-/// At most so many times in one picture.
-const MOST: usize = 8;
+/// Bodies that stand nearer than so many times their spread in the picture hide one another.
+const GAP: f32 = 1.2;
 
 /// Frames to show, in the order of time: the first, the last, and evenly spaced ones between them
-/// unless the bodies would stand in each other's way.
-pub(super) fn choose(frames: &[Frame], radii: &[f64], scale: f64) -> Vec<usize> {
+/// as long as the bodies do not stand in their own way.
+pub(super) fn choose(frames: &[Frame], figures: &[Figure], camera: &Camera) -> Vec<usize> {
     let usable: Vec<usize> = (0..frames.len())
         .filter(|&f| {
-            frames[f].time.is_finite() && (0..radii.len()).any(|b| frames[f].pose(b).is_some())
+            frames[f].time.is_finite() && (0..figures.len()).any(|b| frames[f].pose(b).is_some())
         })
         .collect();
     let (Some(&first), Some(&last)) = (usable.first(), usable.last()) else { return Vec::new() };
     if first == last {
         return vec![last];
     }
-    let mut chosen = vec![first, last];
-    // later ones first: the end of a motion at rest would otherwise hide under its own past
-    for step in (1..count(radii, scale)).rev() {
-        let part = step as f64 / count(radii, scale) as f64;
-        let time = frames[first].time + part * (frames[last].time - frames[first].time);
-        let nearest = nearest(frames, &usable, time);
-        if chosen.iter().all(|&other| apart(&frames[nearest], &frames[other], radii, scale)) {
-            chosen.push(nearest);
+    let apart = |a: usize, b: usize| apart(&frames[a], &frames[b], figures, camera);
+    let span = frames[last].time - frames[first].time;
+    let spaced = |spans: usize| -> Vec<usize> {
+        let time = |step: usize| frames[first].time + span * step as f64 / spans as f64;
+        let between = (1..spans).map(|step| nearest(frames, &usable, time(step)));
+        [first].into_iter().chain(between).chain([last]).collect()
+    };
+    let most = most_spans(figures.len());
+    // without gaps in time, as many as find room
+    let even = (1..=most).rev().map(spaced).find(|chosen| {
+        let pairs = (0..chosen.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+        pairs
+            .into_iter()
+            .all(|(i, j)| (i, j) == (chosen.len() - 1, 0) || apart(chosen[i], chosen[j]))
+    });
+    let even = even.unwrap_or_else(|| vec![first, last]);
+    // a motion that comes to rest: drop what would hide its end
+    let mut uneven = vec![first, last];
+    for &frame in &spaced(most)[1..most] {
+        if uneven.iter().all(|&other| apart(frame, other)) {
+            uneven.push(frame);
         }
     }
+    let short_of_times = uneven.len() > even.len() + usize::from(even.len() > 3);
+    let mut chosen = if short_of_times { uneven } else { even };
     chosen.sort_unstable();
+    chosen.dedup();
     chosen
 }
 
-/// How many spans the time is cut into: the fewer, the more of the picture a body fills.
-fn count(radii: &[f64], scale: f64) -> usize {
-    let bodies = radii.len().max(1);
-    let size: f64 = radii.iter().map(|r| (r / scale) * (r / scale)).sum();
-    let room = (0.75 / size.max(1e-9)) as usize;
-    let crowd = match bodies {
-        1 => MOST - 1,
+/// How many spans the time is cut into at most.
+fn most_spans(bodies: usize) -> usize {
+    match bodies {
+        0 | 1 => 7,
         2 | 3 => 5,
         4..=8 => 3,
         _ => 1,
-    };
-    crowd.min(room).max(1)
+    }
 }
 
 fn nearest(frames: &[Frame], usable: &[usize], time: f64) -> usize {
@@ -50,12 +64,14 @@ fn nearest(frames: &[Frame], usable: &[usize], time: f64) -> usize {
     usable.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).copied().unwrap_or(0)
 }
 
-/// Whether most bodies moved by about their own size between two frames.
-fn apart(a: &Frame, b: &Frame, radii: &[f64], scale: f64) -> bool {
+/// Whether most bodies moved by about their own size, as seen, between two frames.
+fn apart(a: &Frame, b: &Frame, figures: &[Figure], camera: &Camera) -> bool {
     let moved = |body: usize| {
-        let (Some(a), Some(b)) = (a.pose(body), b.pose(body)) else { return true };
-        a.position.distance(b.position) > radii[body].max(0.012 * scale) * 0.9
+        let place = |frame: &Frame| camera.project(frame.pose(body)?.position);
+        let (Some(a), Some(b)) = (place(a), place(b)) else { return true };
+        let size = camera.pixels(figures[body].spread, a).max(1.5 * LEAST_RADIUS);
+        (a.x - b.x).hypot(a.y - b.y) > GAP * size
     };
-    let count = (0..radii.len()).filter(|&body| moved(body)).count();
-    2 * count > radii.len()
+    let count = (0..figures.len()).filter(|&body| moved(body)).count();
+    2 * count > figures.len()
 }

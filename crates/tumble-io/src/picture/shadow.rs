@@ -48,16 +48,13 @@ impl ShadowMap {
 
     /// The darkness at a place, in metres from the map's corner.
     pub fn at(&self, u: f64, v: f64) -> f32 {
-        let (x, y) = (u / self.texel - 0.5, v / self.texel - 0.5);
-        let (left, top) = (x.floor(), y.floor());
-        let (fx, fy) = ((x - left) as f32, (y - top) as f32);
-        let get = |x: f64, y: f64| {
-            let x = (x as i64).clamp(0, self.width as i64 - 1) as usize;
-            let y = (y as i64).clamp(0, self.height as i64 - 1) as usize;
-            self.dark[y * self.width + x]
-        };
-        let upper = get(left, top) * (1.0 - fx) + get(left + 1.0, top) * fx;
-        let lower = get(left, top + 1.0) * (1.0 - fx) + get(left + 1.0, top + 1.0) * fx;
+        let (x, y) = ((u / self.texel - 0.5).max(0.0), (v / self.texel - 0.5).max(0.0));
+        let (left, top) = ((x as usize).min(self.width - 1), (y as usize).min(self.height - 1));
+        let (fx, fy) = ((x - left as f64).min(1.0) as f32, (y - top as f64).min(1.0) as f32);
+        let (right, low) = ((left + 1).min(self.width - 1), (top + 1).min(self.height - 1));
+        let get = |x: usize, y: usize| self.dark[y * self.width + x];
+        let upper = get(left, top) * (1.0 - fx) + get(right, top) * fx;
+        let lower = get(left, low) * (1.0 - fx) + get(right, low) * fx;
         upper * (1.0 - fy) + lower * fy
     }
 

@@ -22,6 +22,7 @@ pub(super) struct Surface {
     pub grid: f64,
     /// Ends in a soft edge, because the wall goes on for ever.
     fading: bool,
+    only_lines: bool,
     fill: [f32; 3],
     line: [f32; 3],
     alpha: f32,
@@ -52,6 +53,7 @@ impl Surface {
             half,
             grid: 0.0,
             fading: false,
+            only_lines: false,
             fill: if is_floor { FLOOR } else { WALL },
             line: FLOOR_LINE,
             alpha: if is_floor { 0.92 } else { 0.75 },
@@ -72,11 +74,15 @@ impl Surface {
         }
         let mut colour = self.fill;
         let near_line = |along: f64| {
-            let cells = along / self.grid;
-            (cells - cells.round()).abs() * self.grid < 0.7 * pixel
+            // the part of a cell, by a cast: rounding is slow on the plainest processors
+            let cells = (along / self.grid).abs();
+            let part = cells - cells as i64 as f64;
+            part.min(1.0 - part) * self.grid < 0.7 * pixel
         };
         if self.grid > 0.0 && (near_line(foot.dot(self.u)) || near_line(foot.dot(self.v))) {
             colour = self.line;
+        } else if self.only_lines {
+            return [0; 4];
         }
         let dark = self.shadow.as_ref().map_or(0.0, |s| s.at(x + self.half[0], y + self.half[1]));
         let keep = 1.0 - dark.min(0.75);
@@ -264,7 +270,6 @@ fn free_space(camera: &Camera, up: DVec3) -> Surface {
     let mut surface = Surface::new(origin, [u, v, up], [size, size], false);
     surface.fading = true;
     surface.grid = round_number(camera.scale() / 3.0);
-    surface.fill = super::figure::PAPER;
-    surface.line = [219.0, 224.0, 231.0];
+    surface.only_lines = true;
     surface
 }

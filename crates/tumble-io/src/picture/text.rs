@@ -53,7 +53,7 @@ impl Font {
     pub fn write(self, image: &mut Image, at: (i32, i32), text: &str, colour: [u8; 3]) {
         let mut x = at.0;
         for letter in text.chars() {
-            let letter = if letter.is_control() { ' ' } else { letter };
+            let letter = replaced(letter);
             let raster = get_raster(letter, self.weight, self.size)
                 .or_else(|| get_raster('?', self.weight, self.size));
             let Some(raster) = raster else { continue };
@@ -77,12 +77,25 @@ impl Font {
     }
 }
 
+/// A letter that the font has in place of one that it has not.
+fn replaced(letter: char) -> char {
+    match letter {
+        '\u{2010}'..='\u{2015}' | '\u{2212}' => '-',
+        '\u{2018}' | '\u{2019}' => '\'',
+        '\u{201c}' | '\u{201d}' => '"',
+        '\u{03bc}' => 'µ',
+        '\u{2026}' => '.',
+        _ if letter.is_control() || letter.is_whitespace() => ' ',
+        _ => letter,
+    }
+}
+
 /// A length in metres with a fitting unit: "0.5 m", "20 µm".
 pub(super) fn length(metres: f64) -> String {
     let units = [(1e3, "km"), (1.0, "m"), (1e-2, "cm"), (1e-3, "mm"), (1e-6, "µm"), (1e-9, "nm")];
     for (size, name) in units {
         let value = metres / size;
-        if (0.999..999.5).contains(&value) || (size == 1.0 && value >= 0.0999 && value < 1.0) {
+        if (0.999..999.5).contains(&value) || (size == 1.0 && (0.0999..1.0).contains(&value)) {
             return format!("{} {name}", (value * 1e3).round() / 1e3);
         }
     }
