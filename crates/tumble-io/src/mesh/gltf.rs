@@ -1,7 +1,7 @@
 //! glTF 2, as text with side files or data URIs (`.gltf`) and as one binary file (`.glb`).
 //!
 //! Read here, on `serde_json`, and not by the crate `gltf` (1.4): its validation panics on a file
-//! whose POSITION refers to a missing accessor, its readers panic on others, and it keeps node transforms at single
+//! whose POSITION refers to a missing accessor, its accessors do unchecked sums, and it keeps node transforms at single
 //! precision.
 //!
 //! Read: the triangles, strips and fans of all nodes of the scene (or of the first scene; without

@@ -157,7 +157,7 @@ fn cycles_and_shared_nodes_are_refused() {
 
 #[test]
 fn instances_out_of_proportion_are_refused() {
-    // each of 20 meshes has 20,000 primitives, which is little text
+    // 2,000 nodes with a mesh of 2,000 primitives are little text
     let primitives = vec![r#"{"attributes":{"POSITION":0}}"#; 2_000].join(",");
     let children: Vec<String> = (1..2_000).map(|i| i.to_string()).collect();
     let nodes = format!(r#"{{"children":[{}]}}"#, children.join(","))
