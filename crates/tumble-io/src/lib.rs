@@ -1,1 +1,4 @@
 //! Scenes, meshes, recordings, plots and pictures for [`tumble`].
+
+pub mod picture;
+pub mod plot;
