@@ -9,6 +9,8 @@ use glam::DVec3;
 const TEXELS: f64 = 640.0;
 /// A shadow is blurred over at most this many texels.
 const MOST_BLUR: f64 = 36.0;
+/// The shadow of a lone vertex is at most so many texels in radius.
+const MOST_BALL: f32 = 60.0;
 
 /// How much of the light is taken away, over a rectangle of a surface.
 #[derive(Clone, Debug)]
@@ -92,7 +94,7 @@ impl ShadowMap {
         let blur = ((0.05 * size + 0.22 * lowest.max(0.0)) / self.texel).clamp(1.0, MOST_BLUR);
         let ball =
             (figure.ball.max(4.0 * camera.pixel_length() - figure.radius) / self.texel) as f32;
-        let ball = if figure.triangles.is_empty() { ball } else { 0.0 };
+        let ball = if figure.triangles.is_empty() { ball.min(MOST_BALL) } else { 0.0 };
         if let Some(mut patch) = self.patch(&feet, blur + f64::from(ball)) {
             patch.fill(&feet, &figure.triangles, ball);
             patch.blur(blur as usize);
@@ -148,12 +150,11 @@ impl Patch {
         };
         let feet: Vec<Foot> = feet.iter().map(moved).collect();
         // the vertices themselves, for triangles that fall between texels
-        let reach = ball.min(60.0);
         for foot in &feet {
-            for y in (foot.y - reach) as i64..=(foot.y + reach) as i64 {
-                for x in (foot.x - reach) as i64..=(foot.x + reach) as i64 {
+            for y in (foot.y - ball) as i64..=(foot.y + ball) as i64 {
+                for x in (foot.x - ball) as i64..=(foot.x + ball) as i64 {
                     let (dx, dy) = (x as f32 + 0.5 - foot.x, y as f32 + 0.5 - foot.y);
-                    if dx * dx + dy * dy <= (reach * reach).max(0.5) {
+                    if dx * dx + dy * dy <= (ball * ball).max(0.5) {
                         self.deepen(x, y, foot.dark);
                     }
                 }
