@@ -1,8 +1,8 @@
 //! Points spread evenly over a surface: a maximal Poisson-disk sample.
 //!
-//! Each triangle is cut into cells. In each round, every cell throws one dart at itself, the cells in random
-//! order; a dart that lands free of all points becomes a point. Then cells that a single point covers are dropped,
-//! and the others halved. When none is left, the surface is covered: no further point would fit.
+//! Each triangle is cut into cells, and each cell throws one dart at itself, the cells in random order; a dart that
+//! lands free of all points becomes a point. Then each cell that no single point covers is halved, and its halves
+//! throw and are halved in turn. When none is left, the surface is covered: no further point would fit.
 //! Source: M. S. Ebeida, S. A. Mitchell, A. Patney, A. A. Davidson and J. D. Owens, "A simple algorithm for maximal
 //! Poisson-disk sampling in high dimensions", Comput. Graph. Forum 31 (2012) 785, with triangles for squares.
 
@@ -18,7 +18,10 @@ const DISTANCE: f64 = 0.8;
 const COARSEST: f64 = 1.5;
 
 /// Longest edge of the cells that are given up uncovered: the most that a hole can exceed `DISTANCE`.
-const FINEST: f64 = 0.05;
+const FINEST: f64 = 0.2;
+
+/// Passes over the cells that take the place of a random order.
+const PASSES: u64 = 16;
 
 /// Points per spacing squared that such a sample has; measured.
 const DENSITY: f64 = 1.1;
@@ -97,8 +100,10 @@ struct Points {
 }
 
 impl Points {
-    fn new(origin: DVec3, distance: f64, expected: f64) -> Self {
+    /// For points above `low` in all coordinates, and about as many as expected.
+    fn new(low: DVec3, distance: f64, expected: f64) -> Self {
         let slots = (expected as usize).max(64).next_power_of_two();
+        let origin = low - DVec3::splat(2.0 * distance);
         let block = 2.0 * distance * (1.0 + TIE);
         Self {
             points: Vec::new(),
@@ -111,7 +116,8 @@ impl Points {
     }
 
     fn block_of(&self, place: DVec3) -> [i64; 3] {
-        ((place - self.origin) / self.block).floor().to_array().map(|x| x as i64)
+        // all places lie above the origin, where cutting the fraction off rounds down
+        ((place - self.origin) / self.block).to_array().map(|x| x as i64)
     }
 
     fn slot(&self, block: [i64; 3]) -> usize {
@@ -152,6 +158,27 @@ impl Points {
         !self.any_near(place, |p| p.distance_squared(place) < least)
     }
 
+    /// Adds the cell's dart if it lands free.
+    fn throw(&mut self, cell: &Cell) {
+        let dart = cell.dart();
+        if self.is_free(dart) {
+            self.push(dart);
+        }
+    }
+
+    /// Halves a cell and throws darts until points cover it, or pieces are down to the finest size.
+    fn fill(&mut self, stack: &mut Vec<Cell>, cell: Cell, finest: f64) {
+        stack.push(cell);
+        while let Some(cell) = stack.pop() {
+            if cell.longest() > finest && !self.covers(&cell) {
+                for half in cell.halves() {
+                    self.throw(&half);
+                    stack.push(half);
+                }
+            }
+        }
+    }
+
     /// Whether one point alone covers the cell: a ball that holds the corners holds what is between.
     fn covers(&self, cell: &Cell) -> bool {
         let [a, b, c] = cell.corners;
@@ -163,6 +190,13 @@ impl Points {
                 && p.distance_squared(c) < most
         })
     }
+}
+
+/// All cells, in an order that is random near by and orderly from afar: sixteen passes, each over a random part.
+///
+/// A wholly random order would wait for memory most of the time.
+fn shuffled(cells: &[Cell]) -> impl Iterator<Item = &Cell> {
+    (0..PASSES).flat_map(|pass| cells.iter().filter(move |cell| cell.key % PASSES == pass))
 }
 
 /// The triangles, relative to `origin`, in cells of at most the coarsest size.
@@ -217,25 +251,20 @@ pub(super) fn surface(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleErr
         return Err(SampleError::OutOfRange { size });
     }
     let expected = estimate(mesh, spacing, size)?;
-    let mut cells = cells(mesh, origin, spacing);
+    let cells = cells(mesh, origin, spacing);
     if cells.is_empty() {
         return Err(SampleError::NoSurface);
     }
 
+    let low = bounds.min - origin;
+    let mut points = Points::new(low, DISTANCE * spacing, expected);
+    for cell in shuffled(&cells) {
+        points.throw(cell);
+    }
     let finest = FINEST * FINEST * spacing * spacing * (1.0 + TIE);
-    let mut points = Points::new(DVec3::ZERO, DISTANCE * spacing, expected);
-    while !cells.is_empty() {
-        // one dart a cell, the cells in random order
-        cells.sort_unstable_by_key(|cell| cell.key);
-        for cell in &cells {
-            let dart = cell.dart();
-            if points.is_free(dart) {
-                points.push(dart);
-            }
-        }
-        // what is still uncovered goes on in halves
-        cells.retain(|cell| cell.longest() > finest && !points.covers(cell));
-        cells = cells.iter().flat_map(Cell::halves).collect();
+    let mut stack = Vec::new();
+    for cell in shuffled(&cells) {
+        points.fill(&mut stack, *cell, finest);
     }
 
     // the shift back may round two points together only where the spacing is below a coordinate's last bits
