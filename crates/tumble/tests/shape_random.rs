@@ -130,7 +130,8 @@ proptest! {
         let near = |p| solids.iter().any(|&s| depth(p, s).abs() < 1e-4);
 
         let points = mesh.sample(Sampling::Volume { spacing }).unwrap_or_default();
-        prop_assert!(points.iter().all(|&p| deepest(p) > 0.0));
+        // the walls between two that touch are inside both or neither
+        prop_assert!(points.iter().all(|&p| deepest(p) > -1e-12));
 
         // and none inside is missing: compare with the lattice, tried point by point
         let (mut min, mut max) = (mesh.vertices[0], mesh.vertices[0]);

@@ -18,7 +18,7 @@ const DISTANCE: f64 = 0.8;
 const COARSEST: f64 = 1.5;
 
 /// Longest edge of the cells that are given up uncovered: the most that a hole can exceed `DISTANCE`.
-const FINEST: f64 = 0.2;
+const FINEST: f64 = 0.1;
 
 /// Passes over the cells that take the place of a random order.
 const PASSES: u64 = 16;
@@ -72,6 +72,11 @@ impl Cell {
         a + (b - a) * u + (c - a) * v
     }
 
+    /// Whether the ball around `centre` of this squared radius covers the cell: it does if it holds the corners.
+    fn lies_within(&self, centre: DVec3, squared_radius: f64) -> bool {
+        self.corners.iter().all(|v| v.distance_squared(centre) < squared_radius)
+    }
+
     /// Cuts the cell at the middle of its longest edge, the first of equals.
     fn halves(&self) -> [Self; 2] {
         let edges = self.edges();
@@ -103,7 +108,7 @@ impl Points {
     /// For points above `low` in all coordinates, and about as many as expected.
     fn new(low: DVec3, distance: f64, expected: f64) -> Self {
         let slots = (expected as usize).max(64).next_power_of_two();
-        let origin = low - DVec3::splat(2.0 * distance);
+        let origin = low - DVec3::splat(4.0 * distance);
         let block = 2.0 * distance * (1.0 + TIE);
         Self {
             points: Vec::new(),
@@ -136,60 +141,73 @@ impl Points {
         self.heads[slot] = self.points.len() as u32;
     }
 
-    /// Whether a point within the distance of `place` satisfies `test`.
-    fn any_near(&self, place: DVec3, test: impl Fn(DVec3) -> bool) -> bool {
-        let low = self.block_of(place - DVec3::splat(self.distance));
-        (0..8).any(|corner| {
-            let block = [0, 1, 2].map(|axis| low[axis].saturating_add(corner >> axis & 1));
-            let mut link = self.heads[self.slot(block)];
-            while link > 0 {
-                let index = link as usize - 1;
-                if test(self.points[index]) {
-                    return true;
+    /// Calls `visit` for all points within `reach` of `place`, and some more.
+    fn each_near(&self, place: DVec3, reach: f64, mut visit: impl FnMut(DVec3)) {
+        let low = self.block_of(place - DVec3::splat(reach));
+        let high = self.block_of(place + DVec3::splat(reach));
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    let mut link = self.heads[self.slot([x, y, z])];
+                    while link > 0 {
+                        let index = link as usize - 1;
+                        visit(self.points[index]);
+                        link = self.chain[index];
+                    }
                 }
-                link = self.chain[index];
             }
-            false
-        })
-    }
-
-    fn is_free(&self, place: DVec3) -> bool {
-        let least = self.distance * self.distance;
-        !self.any_near(place, |p| p.distance_squared(place) < least)
+        }
     }
 
     /// Adds the cell's dart if it lands free.
     fn throw(&mut self, cell: &Cell) {
         let dart = cell.dart();
-        if self.is_free(dart) {
+        let least = self.distance * self.distance;
+        let mut free = true;
+        self.each_near(dart, self.distance, |p| free &= p.distance_squared(dart) >= least);
+        if free {
             self.push(dart);
         }
     }
 
     /// Halves a cell and throws darts until points cover it, or pieces are down to the finest size.
-    fn fill(&mut self, stack: &mut Vec<Cell>, cell: Cell, finest: f64) {
+    fn fill(&mut self, spare: &mut Spare, cell: Cell, finest: f64) {
+        // what can matter to any piece, looked up once: a piece and its darts lie within the cell
+        let Spare { stack, near } = spare;
+        let [a, b, c] = cell.corners;
+        let middle = (a + b + c) / 3.0;
+        let extent = [a, b, c].map(|v| v.distance_squared(middle)).into_iter().fold(0.0, f64::max);
+        let reach = (self.distance + extent.sqrt()) * (1.0 + TIE);
+        near.clear();
+        self.each_near(middle, reach, |p| {
+            if p.distance_squared(middle) <= reach * reach {
+                near.push(p);
+            }
+        });
+
+        let limit = self.distance * self.distance;
         stack.push(cell);
         while let Some(cell) = stack.pop() {
-            if cell.longest() > finest && !self.covers(&cell) {
-                for half in cell.halves() {
-                    self.throw(&half);
-                    stack.push(half);
+            if cell.longest() <= finest || near.iter().any(|&p| cell.lies_within(p, limit)) {
+                continue;
+            }
+            for half in cell.halves() {
+                let dart = half.dart();
+                if near.iter().all(|p| p.distance_squared(dart) >= limit) {
+                    near.push(dart);
+                    self.push(dart);
                 }
+                stack.push(half);
             }
         }
     }
+}
 
-    /// Whether one point alone covers the cell: a ball that holds the corners holds what is between.
-    fn covers(&self, cell: &Cell) -> bool {
-        let [a, b, c] = cell.corners;
-        let most = self.distance * self.distance;
-        // compared in this order, most points fail at the first corner
-        self.any_near((a + b + c) / 3.0, |p| {
-            p.distance_squared(a) < most
-                && p.distance_squared(b) < most
-                && p.distance_squared(c) < most
-        })
-    }
+/// Memory that `Points::fill` uses again for each cell.
+#[derive(Default)]
+struct Spare {
+    stack: Vec<Cell>,
+    near: Vec<DVec3>,
 }
 
 /// All cells, in an order that is random near by and orderly from afar: sixteen passes, each over a random part.
@@ -262,9 +280,9 @@ pub(super) fn surface(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleErr
         points.throw(cell);
     }
     let finest = FINEST * FINEST * spacing * spacing * (1.0 + TIE);
-    let mut stack = Vec::new();
+    let mut spare = Spare::default();
     for cell in shuffled(&cells) {
-        points.fill(&mut stack, *cell, finest);
+        points.fill(&mut spare, *cell, finest);
     }
 
     // the shift back may round two points together only where the spacing is below a coordinate's last bits

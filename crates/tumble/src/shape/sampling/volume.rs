@@ -145,20 +145,24 @@ fn extent_of_row(triangle: [DVec3; 3], y: f64, offset: f64) -> Option<(f64, f64)
     (low <= high).then_some((low, high))
 }
 
-/// The lattice points between the crossings of one column, which are sorted by height.
+/// The lattice points of one column, whose crossings are sorted by height: those between where all lines have
+/// entered and where the first leaves.
 fn fill_column(points: &mut Vec<DVec3>, lattice: &Lattice, column: &[Crossing]) {
     let Some(&Crossing { column: [row, layer], .. }) = column.first() else { return };
     let (x, y) = (lattice.at(0, layer), lattice.at(1, row));
-    let offset = lattice.offset;
     let mut counts = [0i64; LINES.len()];
-    for pair in column.windows(2) {
-        counts[usize::from(pair[0].line)] += i64::from(pair[0].sign);
-        if counts.contains(&0) {
+    let mut entered = None;
+    for crossing in column {
+        counts[usize::from(crossing.line)] += i64::from(crossing.sign);
+        if !counts.contains(&0) {
+            // a crossing within the solid, where parts overlap, changes nothing
+            entered.get_or_insert(crossing.z);
             continue;
         }
-        for k in lattice.layers(2, pair[0].z, pair[1].z) {
+        let Some(bottom) = entered.take() else { continue };
+        for k in lattice.layers(2, bottom, crossing.z) {
             let z = lattice.at(2, k);
-            if z > pair[0].z + offset && z < pair[1].z - offset {
+            if z > bottom + lattice.offset && z < crossing.z - lattice.offset {
                 points.push(DVec3::new(x, y, z));
             }
         }
