@@ -20,7 +20,7 @@ const COARSEST: f64 = 1.5;
 /// Longest edge of the cells that are given up uncovered: the most that a hole can exceed `DISTANCE`.
 const FINEST: f64 = 0.1;
 
-/// Passes over the cells that take the place of a random order.
+/// Passes over the cells that take the place of a random order, where cells are about as large as the spacing.
 const PASSES: u64 = 16;
 
 /// Points per spacing squared that such a sample has; measured.
@@ -210,11 +210,16 @@ struct Spare {
     near: Vec<DVec3>,
 }
 
-/// All cells, in an order that is random near by and orderly from afar: sixteen passes, each over a random part.
+/// Puts the cells in an order that is random near by and orderly from afar: passes over the whole surface, each
+/// over a random part of the cells in which no two are likely to be neighbours.
 ///
-/// A wholly random order would wait for memory most of the time.
-fn shuffled(cells: &[Cell]) -> impl Iterator<Item = &Cell> {
-    (0..PASSES).flat_map(|pass| cells.iter().filter(move |cell| cell.key % PASSES == pass))
+/// A wholly random order would wait for memory most of the time; a wholly orderly one would pack the points
+/// against each other. Of cells finer than the spacing it takes the more passes, the finer they are.
+fn shuffle(cells: &mut [Cell], expected: f64) {
+    let crowd = (cells.len() as f64 / (2.0 * expected).max(1.0)).ceil();
+    let passes = PASSES * crowd as u64;
+    // a stable sort, so that each pass keeps the mesh's own order
+    cells.sort_by_key(|cell| cell.key % passes);
 }
 
 /// The triangles, relative to `origin`, in cells of at most the coarsest size.
@@ -269,19 +274,20 @@ pub(super) fn surface(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleErr
         return Err(SampleError::OutOfRange { size });
     }
     let expected = estimate(mesh, spacing, size)?;
-    let cells = cells(mesh, origin, spacing);
+    let mut cells = cells(mesh, origin, spacing);
     if cells.is_empty() {
         return Err(SampleError::NoSurface);
     }
 
+    shuffle(&mut cells, expected);
     let low = bounds.min - origin;
     let mut points = Points::new(low, DISTANCE * spacing, expected);
-    for cell in shuffled(&cells) {
+    for cell in &cells {
         points.throw(cell);
     }
     let finest = FINEST * FINEST * spacing * spacing * (1.0 + TIE);
     let mut spare = Spare::default();
-    for cell in shuffled(&cells) {
+    for cell in &cells {
         points.fill(&mut spare, *cell, finest);
     }
 
