@@ -1,8 +1,9 @@
-//! Points spread evenly over a surface: a maximal Poisson-disk sample.
+//! Points spread evenly over a surface: a Poisson-disk sample, maximal but for a known bound.
 //!
 //! Each triangle is cut into cells, and each cell throws one dart at itself, the cells in random order; a dart that
 //! lands free of all points becomes a point. Then each cell that no single point covers is halved, and its halves
-//! throw and are halved in turn. When none is left, the surface is covered: no further point would fit.
+//! throw and are halved in turn, down to a tenth of the spacing. Then the surface is covered: nowhere is the nearest
+//! point further than the least distance between points and that tenth.
 //! Source: M. S. Ebeida, S. A. Mitchell, A. Patney, A. A. Davidson and J. D. Owens, "A simple algorithm for maximal
 //! Poisson-disk sampling in high dimensions", Comput. Graph. Forum 31 (2012) 785, with triangles for squares.
 
