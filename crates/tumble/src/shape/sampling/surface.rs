@@ -1,8 +1,9 @@
-//! Points spread evenly over a surface: a maximal Poisson-disk sample.
+//! Points spread evenly over a surface: a Poisson-disk sample, maximal but for a known bound.
 //!
-//! Each triangle is cut into cells. In each round, every cell throws one dart at itself, the cells in random
-//! order; a dart that lands free of all points becomes a point. Then cells that a single point covers are dropped,
-//! and the others halved. When none is left, the surface is covered: no further point would fit.
+//! Each triangle is cut into cells, and each cell throws one dart at itself, the cells in random order; a dart that
+//! lands free of all points becomes a point. Then each cell that no single point covers is halved, and its halves
+//! throw and are halved in turn, down to a tenth of the spacing. Then the surface is covered: nowhere is the nearest
+//! point further than the least distance between points and that tenth.
 //! Source: M. S. Ebeida, S. A. Mitchell, A. Patney, A. A. Davidson and J. D. Owens, "A simple algorithm for maximal
 //! Poisson-disk sampling in high dimensions", Comput. Graph. Forum 31 (2012) 785, with triangles for squares.
 
@@ -18,7 +19,10 @@ const DISTANCE: f64 = 0.8;
 const COARSEST: f64 = 1.5;
 
 /// Longest edge of the cells that are given up uncovered: the most that a hole can exceed `DISTANCE`.
-const FINEST: f64 = 0.05;
+const FINEST: f64 = 0.1;
+
+/// Passes over the cells that take the place of a random order, where cells are about as large as the spacing.
+const PASSES: u64 = 16;
 
 /// Points per spacing squared that such a sample has; measured.
 const DENSITY: f64 = 1.1;
@@ -69,6 +73,11 @@ impl Cell {
         a + (b - a) * u + (c - a) * v
     }
 
+    /// Whether the ball around `centre` of this squared radius covers the cell: it does if it holds the corners.
+    fn lies_within(&self, centre: DVec3, squared_radius: f64) -> bool {
+        self.corners.iter().all(|v| v.distance_squared(centre) < squared_radius)
+    }
+
     /// Cuts the cell at the middle of its longest edge, the first of equals.
     fn halves(&self) -> [Self; 2] {
         let edges = self.edges();
@@ -97,8 +106,10 @@ struct Points {
 }
 
 impl Points {
-    fn new(origin: DVec3, distance: f64, expected: f64) -> Self {
+    /// For points above `low` in all coordinates, and about as many as expected.
+    fn new(low: DVec3, distance: f64, expected: f64) -> Self {
         let slots = (expected as usize).max(64).next_power_of_two();
+        let origin = low - DVec3::splat(4.0 * distance);
         let block = 2.0 * distance * (1.0 + TIE);
         Self {
             points: Vec::new(),
@@ -111,7 +122,8 @@ impl Points {
     }
 
     fn block_of(&self, place: DVec3) -> [i64; 3] {
-        ((place - self.origin) / self.block).floor().to_array().map(|x| x as i64)
+        // all places lie above the origin, where cutting the fraction off rounds down
+        ((place - self.origin) / self.block).to_array().map(|x| x as i64)
     }
 
     fn slot(&self, block: [i64; 3]) -> usize {
@@ -130,39 +142,85 @@ impl Points {
         self.heads[slot] = self.points.len() as u32;
     }
 
-    /// Whether a point within the distance of `place` satisfies `test`.
-    fn any_near(&self, place: DVec3, test: impl Fn(DVec3) -> bool) -> bool {
-        let low = self.block_of(place - DVec3::splat(self.distance));
-        (0..8).any(|corner| {
-            let block = [0, 1, 2].map(|axis| low[axis].saturating_add(corner >> axis & 1));
-            let mut link = self.heads[self.slot(block)];
-            while link > 0 {
-                let index = link as usize - 1;
-                if test(self.points[index]) {
-                    return true;
+    /// Calls `visit` for all points within `reach` of `place`, and some more.
+    fn each_near(&self, place: DVec3, reach: f64, mut visit: impl FnMut(DVec3)) {
+        let low = self.block_of(place - DVec3::splat(reach));
+        let high = self.block_of(place + DVec3::splat(reach));
+        for x in low[0]..=high[0] {
+            for y in low[1]..=high[1] {
+                for z in low[2]..=high[2] {
+                    let mut link = self.heads[self.slot([x, y, z])];
+                    while link > 0 {
+                        let index = link as usize - 1;
+                        visit(self.points[index]);
+                        link = self.chain[index];
+                    }
                 }
-                link = self.chain[index];
             }
-            false
-        })
+        }
     }
 
-    fn is_free(&self, place: DVec3) -> bool {
+    /// Adds the cell's dart if it lands free.
+    fn throw(&mut self, cell: &Cell) {
+        let dart = cell.dart();
         let least = self.distance * self.distance;
-        !self.any_near(place, |p| p.distance_squared(place) < least)
+        let mut free = true;
+        self.each_near(dart, self.distance, |p| free &= p.distance_squared(dart) >= least);
+        if free {
+            self.push(dart);
+        }
     }
 
-    /// Whether one point alone covers the cell: a ball that holds the corners holds what is between.
-    fn covers(&self, cell: &Cell) -> bool {
+    /// Halves a cell and throws darts until points cover it, or pieces are down to the finest size.
+    fn fill(&mut self, spare: &mut Spare, cell: Cell, finest: f64) {
+        // what can matter to any piece, looked up once: a piece and its darts lie within the cell
+        let Spare { stack, near } = spare;
         let [a, b, c] = cell.corners;
-        let most = self.distance * self.distance;
-        // compared in this order, most points fail at the first corner
-        self.any_near((a + b + c) / 3.0, |p| {
-            p.distance_squared(a) < most
-                && p.distance_squared(b) < most
-                && p.distance_squared(c) < most
-        })
+        let middle = (a + b + c) / 3.0;
+        let extent = [a, b, c].map(|v| v.distance_squared(middle)).into_iter().fold(0.0, f64::max);
+        let reach = (self.distance + extent.sqrt()) * (1.0 + TIE);
+        near.clear();
+        self.each_near(middle, reach, |p| {
+            if p.distance_squared(middle) <= reach * reach {
+                near.push(p);
+            }
+        });
+
+        let limit = self.distance * self.distance;
+        stack.push(cell);
+        while let Some(cell) = stack.pop() {
+            if cell.longest() <= finest || near.iter().any(|&p| cell.lies_within(p, limit)) {
+                continue;
+            }
+            for half in cell.halves() {
+                let dart = half.dart();
+                if near.iter().all(|p| p.distance_squared(dart) >= limit) {
+                    near.push(dart);
+                    self.push(dart);
+                }
+                stack.push(half);
+            }
+        }
     }
+}
+
+/// Memory that `Points::fill` uses again for each cell.
+#[derive(Default)]
+struct Spare {
+    stack: Vec<Cell>,
+    near: Vec<DVec3>,
+}
+
+/// Puts the cells in an order that is random near by and orderly from afar: passes over the whole surface, each
+/// over a random part of the cells in which no two are likely to be neighbours.
+///
+/// A wholly random order would wait for memory most of the time; a wholly orderly one would pack the points
+/// against each other. Of cells finer than the spacing it takes the more passes, the finer they are.
+fn shuffle(cells: &mut [Cell], expected: f64) {
+    let crowd = (cells.len() as f64 / (2.0 * expected).max(1.0)).ceil();
+    let passes = PASSES * crowd as u64;
+    // a stable sort, so that each pass keeps the mesh's own order
+    cells.sort_by_key(|cell| cell.key % passes);
 }
 
 /// The triangles, relative to `origin`, in cells of at most the coarsest size.
@@ -222,20 +280,16 @@ pub(super) fn surface(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleErr
         return Err(SampleError::NoSurface);
     }
 
+    shuffle(&mut cells, expected);
+    let low = bounds.min - origin;
+    let mut points = Points::new(low, DISTANCE * spacing, expected);
+    for cell in &cells {
+        points.throw(cell);
+    }
     let finest = FINEST * FINEST * spacing * spacing * (1.0 + TIE);
-    let mut points = Points::new(DVec3::ZERO, DISTANCE * spacing, expected);
-    while !cells.is_empty() {
-        // one dart a cell, the cells in random order
-        cells.sort_unstable_by_key(|cell| cell.key);
-        for cell in &cells {
-            let dart = cell.dart();
-            if points.is_free(dart) {
-                points.push(dart);
-            }
-        }
-        // what is still uncovered goes on in halves
-        cells.retain(|cell| cell.longest() > finest && !points.covers(cell));
-        cells = cells.iter().flat_map(Cell::halves).collect();
+    let mut spare = Spare::default();
+    for cell in &cells {
+        points.fill(&mut spare, *cell, finest);
     }
 
     // the shift back may round two points together only where the spacing is below a coordinate's last bits

@@ -47,7 +47,7 @@ fn surface_points_keep_their_distance_and_leave_no_hole() {
                 for j in 0..=steps - i {
                     let (u, v) = (i as f64 / steps as f64, j as f64 / steps as f64);
                     let hole = nearest(&points, a + (b - a) * u + (c - a) * v);
-                    assert!(hole <= 0.85 * spacing, "{name}: {hole}");
+                    assert!(hole <= 0.9 * spacing, "{name}: {hole}");
                 }
             }
         }
@@ -75,14 +75,15 @@ fn a_fine_mesh_and_slivers_give_the_same_density_as_a_coarse_one() {
         on_surface(&Primitive::Box { size: DVec3::ONE, divisions: 1 }.mesh().unwrap(), 0.05);
     let fine =
         on_surface(&Primitive::Box { size: DVec3::ONE, divisions: 200 }.mesh().unwrap(), 0.05);
-    assert!((fine.len() as f64 / coarse.len() as f64 - 1.0).abs() < 0.05);
+    let ratio = fine.len() as f64 / coarse.len() as f64;
+    assert!((ratio - 1.0).abs() < 0.1, "{ratio}");
     // a fan of slivers on a square
     let n = 1000;
     let mut vertices = vec![DVec3::ZERO];
     vertices.extend((0..=n).map(|i| DVec3::new(1.0, i as f64 / n as f64, 0.0)));
     let fan = Mesh::new(vertices, (1..=n).map(|i| [0, i, i + 1]).collect()).unwrap();
     let density = on_surface(&fan, 0.02).len() as f64 * 4e-4 / 0.5;
-    assert!((0.95..1.25).contains(&density), "{density}");
+    assert!((1.0..1.2).contains(&density), "{density}");
 }
 
 #[test]
@@ -219,7 +220,7 @@ fn cavities_are_empty_overlaps_count_once_and_winding_does_not_matter() {
     let hollow = joined(&cube(1.0), &cube(0.5), true);
     // the cavity's walls lie on the lattice, and so outside
     assert_eq!(inside(&hollow, 0.1).len(), 1000 - 6 * 6 * 6);
-    let double = joined(&cube(1.0), &cube(0.52), false);
+    let double = joined(&cube(1.0), &cube(0.5), false);
     assert_eq!(inside(&double, 0.1).len(), 1000);
     let inward = mapped(&cube(1.0), |v| -v);
     assert_eq!(inside(&inward, 0.1).len(), 1000);

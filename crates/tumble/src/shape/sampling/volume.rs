@@ -15,9 +15,16 @@ use glam::{DVec2, DVec3};
 /// A point nearer to the surface than this part of the spacing (or of the mesh, if that is smaller) is on it, and so outside.
 const ON_SURFACE: f64 = 1e-6;
 
+/// Slope of the lines' offsets; irrational, so that none lies in a wall at a simple angle.
+const SLOPE: f64 = 0.618_033_988_749_894_8;
+
 /// The lines through one column: a point is inside if it is for all four, whichever side a wall lies.
-const LINES: [DVec2; 4] =
-    [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), DVec2::new(1.0, 1.0)];
+const LINES: [DVec2; 4] = [
+    DVec2::new(-1.0, -SLOPE),
+    DVec2::new(1.0, -SLOPE),
+    DVec2::new(-1.0, SLOPE),
+    DVec2::new(1.0, SLOPE),
+];
 
 /// A cubic lattice centred at the origin.
 struct Lattice {
@@ -71,6 +78,9 @@ struct Crossing {
 /// triangle there.
 fn crossing([a, b, c]: [DVec3; 3], foot: DVec2) -> Option<(i8, f64)> {
     let mut turns = 0;
+    // where the edges are level with the foot; either two are, or none
+    let mut level = [DVec3::ZERO; 2];
+    let mut count = 0;
     for (p, q) in [(a, b), (b, c), (c, a)] {
         if (p.y > foot.y) == (q.y > foot.y) {
             continue;
@@ -81,19 +91,18 @@ fn crossing([a, b, c]: [DVec3; 3], foot: DVec2) -> Option<(i8, f64)> {
         if left > 0.0 {
             turns += if p.y < q.y { 1 } else { -1 };
         }
+        level[count % 2] = low + (high - low) * ((foot.y - low.y) / (high.y - low.y));
+        count += 1;
     }
     if turns == 0 {
         return None;
     }
 
-    // barycentric height, held within the triangle for one that stands upright
-    let part = |p: DVec3, q: DVec3| (p.truncate() - foot).perp_dot(q.truncate() - foot);
-    let weights = [part(b, c), part(c, a), part(a, b)];
-    let sum: f64 = weights.iter().sum();
-    let z = (weights[0] * a.z + weights[1] * b.z + weights[2] * c.z) / sum;
-    let (low, high) = (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z));
-    // a NaN of an upright triangle fails both comparisons
-    Some((turns, if z > low { z.min(high) } else { low }))
+    // between the two edges; a triangle that stands upright has no one height, but none beyond its edges
+    let [p, q] = level;
+    let part = (foot.x - p.x) / (q.x - p.x);
+    let part = if part.is_nan() { 0.5 } else { part.clamp(0.0, 1.0) };
+    Some((turns, p.z + part * (q.z - p.z)))
 }
 
 /// Adds all crossings of a triangle with the lines through the lattice's columns.
@@ -136,20 +145,24 @@ fn extent_of_row(triangle: [DVec3; 3], y: f64, offset: f64) -> Option<(f64, f64)
     (low <= high).then_some((low, high))
 }
 
-/// The lattice points between the crossings of one column, which are sorted by height.
+/// The lattice points of one column, whose crossings are sorted by height: those between where all lines have
+/// entered and where the first leaves.
 fn fill_column(points: &mut Vec<DVec3>, lattice: &Lattice, column: &[Crossing]) {
     let Some(&Crossing { column: [row, layer], .. }) = column.first() else { return };
     let (x, y) = (lattice.at(0, layer), lattice.at(1, row));
-    let offset = lattice.offset;
     let mut counts = [0i64; LINES.len()];
-    for pair in column.windows(2) {
-        counts[usize::from(pair[0].line)] += i64::from(pair[0].sign);
-        if counts.contains(&0) {
+    let mut entered = None;
+    for crossing in column {
+        counts[usize::from(crossing.line)] += i64::from(crossing.sign);
+        if !counts.contains(&0) {
+            // a crossing within the solid, where parts overlap, changes nothing
+            entered.get_or_insert(crossing.z);
             continue;
         }
-        for k in lattice.layers(2, pair[0].z, pair[1].z) {
+        let Some(bottom) = entered.take() else { continue };
+        for k in lattice.layers(2, bottom, crossing.z) {
             let z = lattice.at(2, k);
-            if z > pair[0].z + offset && z < pair[1].z - offset {
+            if z > bottom + lattice.offset && z < crossing.z - lattice.offset {
                 points.push(DVec3::new(x, y, z));
             }
         }
