@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
-    BodyModel, BodyState, BuildError, BuildErrors, Integrator, Material, MaterialOverride, Model,
-    Shape, State, WallBox, WallPlane, World,
+    BodyModel, BodyState, BuildError, BuildErrors, ContactLaw, Damping, DragModes, Integrator,
+    Material, MaterialOverride, Model, Shape, State, WallBox, WallPlane, World, critical_dt,
 };
 
 /// A body as a user describes it.
@@ -99,6 +99,8 @@ pub struct WorldBuilder {
     velocity_damping_stiffness: f64,
     dt: f64,
     integrator: Integrator,
+    energy_tolerance: Option<f64>,
+    force: bool,
     material: Material,
     walls: Vec<(WallPlane, MaterialOverride)>,
     bodies: Vec<Body>,
@@ -112,6 +114,8 @@ impl Default for WorldBuilder {
             velocity_damping_stiffness: 0.0,
             dt: 1e-3,
             integrator: Integrator::default(),
+            energy_tolerance: None,
+            force: false,
             material: Material::default(),
             walls: Vec::new(),
             bodies: Vec::new(),
@@ -141,6 +145,19 @@ impl WorldBuilder {
     /// How a step advances time.
     pub fn integrator(mut self, integrator: Integrator) -> Self {
         self.integrator = integrator;
+        self
+    }
+
+    /// Refine steps in contact until the energy that a part of them leaves unaccounted for is below
+    /// this part of the energy in play. Costs more the smaller it is; `None` refines nothing.
+    pub fn energy_tolerance(mut self, tolerance: impl Into<Option<f64>>) -> Self {
+        self.energy_tolerance = tolerance.into();
+        self
+    }
+
+    /// Builds even with a step above the critical one.
+    pub fn force(mut self, force: bool) -> Self {
+        self.force = force;
         self
     }
 
@@ -184,6 +201,7 @@ impl WorldBuilder {
             velocity_damping_stiffness: self.velocity_damping_stiffness,
             dt: self.dt,
             integrator: self.integrator,
+            energy_tolerance: self.energy_tolerance,
             walls: self.walls.iter().map(|(wall, _)| *wall).collect(),
             bodies: Vec::with_capacity(self.bodies.len()),
         };
@@ -194,11 +212,19 @@ impl WorldBuilder {
                 Ok((body_model, body_state)) => {
                     model.bodies.push(body_model);
                     state.bodies.push(body_state);
+                    state.springs.push(Vec::new());
                 }
                 Err(error) => errors.push(error),
             }
         }
         errors.extend(same_names(&model));
+        errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && !self.force).map(
+            |critical| BuildError::Unstable {
+                dt: self.dt,
+                critical: critical.dt,
+                body: critical.body,
+            },
+        ));
         if errors.is_empty() { Ok(World::of(model, state)) } else { Err(BuildErrors(errors)) }
     }
 
@@ -216,9 +242,12 @@ impl WorldBuilder {
         let overrides = self.walls.iter().map(|(_, material)| *material);
         let overrides = overrides.chain(self.bodies.iter().map(|body| body.material));
         let materials = overrides.map(|own| own.over(self.material)).chain([self.material]);
-        for Material { collision_stiffness: k } in materials {
-            let ok = k >= 0.0 && k.is_finite();
-            check("collision_stiffness", ok, &k, "a number of N/m, 0 or more");
+        for material in materials {
+            check_material(&material, &mut check);
+        }
+        if let Some(tolerance) = self.energy_tolerance {
+            let ok = tolerance > 0.0 && tolerance < 1.0;
+            check("energy_tolerance", ok, &tolerance, "above 0 and below 1");
         }
     }
 
@@ -254,16 +283,47 @@ impl WorldBuilder {
                 allowed,
             });
         }
-        let contact =
-            |(_, wall): &(_, MaterialOverride)| self.material.between(*wall, body.material);
+        let particle_mass = mass / body.shape.moments().count;
+        let contact = |(_, wall): &(_, MaterialOverride)| {
+            self.material.between(*wall, body.material).law(particle_mass)
+        };
+        let contacts: Vec<_> = self.walls.iter().map(contact).collect();
+        let moments = body.shape.principal().moments * mass;
+        let inverse_moments = moments.to_array().map(|m| if m > 0.0 { 1.0 / m } else { 0.0 });
         Ok(BodyModel {
             name,
             shape: Arc::clone(&body.shape),
             mass,
             inertia,
             inverse_inertia,
-            contacts: self.walls.iter().map(contact).collect(),
+            inverse_moments: DVec3::from_array(inverse_moments),
+            drag_modes: DragModes::of(&body.shape, mass),
+            is_damped: contacts.iter().any(ContactLaw::is_damped),
+            contacts,
         })
+    }
+}
+
+fn check_material(
+    material: &Material,
+    check: &mut impl FnMut(&'static str, bool, &dyn std::fmt::Display, &'static str),
+) {
+    let mut number = |name, value: f64, allowed| {
+        check(name, value >= 0.0 && value.is_finite(), &value, allowed);
+    };
+    number("collision_stiffness", material.collision_stiffness, "a number of N/m, 0 or more");
+    number("friction_stiffness", material.friction_stiffness, "a number, 0 or more");
+    if let Some(spring) = material.friction_spring {
+        number("friction_spring", spring, "a number of N/m, 0 or more");
+    }
+    if let Some(damping) = material.friction_damping {
+        number("friction_damping", damping, "a number of N·s/m, 0 or more");
+    }
+    match material.damping {
+        Damping::Dashpot(c) => number("collision_damping", c, "a number of N·s/m, 0 or more"),
+        Damping::Restitution(e) => {
+            check("restitution", e > 0.0 && e <= 1.0, &e, "above 0, up to 1");
+        }
     }
 }
 
@@ -297,15 +357,16 @@ fn body_state(model: &BodyModel, body: &Body) -> Result<BodyState, BuildError> {
     if !angular_momentum.is_finite() {
         return refuse("initial_angular_velocity", &body.angular_velocity, three);
     }
-    Ok(BodyState { position, velocity: body.velocity, orientation, angular_momentum })
+    let velocity = body.velocity;
+    Ok(BodyState { position, velocity, orientation, angular_momentum, ..BodyState::default() })
 }
 
 /// A body that starts with its centre of mass behind a wall, deeper than ten times the depth at
 /// which the springs of its particles carry its weight, was put there by mistake.
 fn check_inside(model: &Model, body: &BodyModel, state: &BodyState) -> Result<(), BuildError> {
-    for (wall, material) in model.walls.iter().zip(&body.contacts) {
+    for (wall, law) in model.walls.iter().zip(&body.contacts) {
         let depth = wall.depth(state.position);
-        let sag = body.particle_mass() * model.gravity.length() / material.collision_stiffness;
+        let sag = body.particle_mass() * model.gravity.length() / law.stiffness;
         if depth > 10.0 * sag {
             let normal = wall.normal.to_array();
             return Err(BuildError::Outside { body: body.name.clone(), normal, depth });

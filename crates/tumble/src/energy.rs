@@ -1,8 +1,7 @@
 //! The account of every joule.
 
-use glam::DMat3;
-
-use crate::{Model, State, stage};
+use crate::stage::Placed;
+use crate::{Model, State};
 
 /// Where the energy of a run is, or went, at one moment (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,13 +29,12 @@ impl Energy {
             slip: state.tally.slip,
             ..Self::default()
         };
-        for (body, s) in model.bodies.iter().zip(&state.bodies) {
-            let rotation = DMat3::from_quat(s.orientation);
-            let omega = body.angular_velocity(rotation, s.angular_momentum);
-            energy.kinetic += 0.5 * body.mass * s.velocity.length_squared();
-            energy.kinetic += 0.5 * s.angular_momentum.dot(omega);
+        for (index, body) in model.bodies.iter().enumerate() {
+            let s = &state.bodies[index];
+            let place = Placed::new(body, s);
+            energy.kinetic += place.kinetic_energy(s.angular_momentum);
             energy.gravitational -= body.mass * model.gravity.dot(s.position);
-            energy.elastic += stage::elastic_energy(model, body, s);
+            energy.elastic += place.elastic_energy(model, &state.springs[index]);
         }
         energy
     }

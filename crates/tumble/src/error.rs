@@ -32,6 +32,15 @@ pub enum BuildError {
         /// How deep the centre of mass lies behind it (m).
         depth: f64,
     },
+    /// The step is longer than contact can bear.
+    Unstable {
+        /// The step (s).
+        dt: f64,
+        /// The longest stable step (s).
+        critical: f64,
+        /// Name of the body with the fastest contact.
+        body: String,
+    },
     /// Two bodies have the same name.
     SameName {
         /// The name.
@@ -52,6 +61,11 @@ impl std::fmt::Display for BuildError {
                 f,
                 "body \"{body}\" starts outside: its centre of mass lies {depth:.3e} m behind the wall \
                  with normal ({x}, {y}, {z}); move its `position` to the free side"
+            ),
+            Self::Unstable { dt, critical, body } => write!(
+                f,
+                "`dt` is {dt} s, but contact of body \"{body}\" is stable only up to {critical:.3e} s; \
+                 take a smaller `dt` or `collision_stiffness`, or insist with --force"
             ),
             Self::SameName { body } => {
                 write!(f, "two bodies are called \"{body}\"; give each its own `name`")

@@ -7,21 +7,29 @@ use crate::State;
 impl State {
     /// The first 16 bytes of the SHA-256 of the state as little-endian numbers, in hexadecimal:
     /// step, time, then position, velocity, orientation (w, x, y, z) and angular momentum of each
-    /// body, then the tally. Two runs agree to the last bit when, and only when, their hashes do.
+    /// body with its friction springs, then the tally. Two runs agree to the last bit when, and only when, their hashes do.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();
         let mut put = |value: f64| hasher.update(value.to_le_bytes());
         put(f64::from_bits(self.step));
         put(self.time);
-        for body in &self.bodies {
+        for (body, springs) in self.bodies.iter().zip(&self.springs) {
             body.position.to_array().into_iter().for_each(&mut put);
             body.velocity.to_array().into_iter().for_each(&mut put);
-            let [x, y, z, w] = body.orientation.to_array();
-            [w, x, y, z].into_iter().for_each(&mut put);
+            for q in [body.orientation, body.orientation_rest] {
+                [q.w, q.x, q.y, q.z].into_iter().for_each(&mut put);
+            }
             body.angular_momentum.to_array().into_iter().for_each(&mut put);
+            put(f64::from_bits(springs.len() as u64));
+            for spring in springs {
+                put(f64::from(spring.wall));
+                put(f64::from(spring.particle));
+                spring.anchor.to_array().into_iter().for_each(&mut put);
+            }
         }
         let tally = &self.tally;
         [tally.drag, tally.dashpot, tally.slip, tally.max_depth].into_iter().for_each(&mut put);
+        put(f64::from_bits(tally.evaluations));
         hasher.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
 }

@@ -37,11 +37,13 @@
 mod builder;
 mod energy;
 mod error;
+mod flight;
 mod hash;
 mod material;
 mod model;
 mod scratch;
 mod shape;
+mod stability;
 pub mod stage;
 mod state;
 pub mod step;
@@ -51,8 +53,9 @@ mod world;
 pub use builder::{Body, WorldBuilder};
 pub use energy::Energy;
 pub use error::{BuildError, BuildErrors, StepError};
+pub use flight::DragModes;
 pub use glam::{DMat3, DQuat, DVec3};
-pub use material::{Material, MaterialOverride};
+pub use material::{ContactLaw, Damping, Material, MaterialOverride, damping_ratio, restitution};
 pub use model::{BodyModel, Integrator, Model};
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{
@@ -60,6 +63,7 @@ pub use shape::{
     OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError, PrincipalAxes, SampleError,
     Sampling, Shape, ShapeError, ShellError,
 };
-pub use state::{BodyState, State, Tally};
+pub use stability::{CriticalStep, critical_dt};
+pub use state::{BodyState, FrictionSpring, State, Tally};
 pub use wall::{WallBox, WallPlane};
 pub use world::{BodyView, World};

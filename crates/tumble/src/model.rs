@@ -4,15 +4,19 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
+use crate::flight::DragModes;
 use crate::shape::Shape;
 use crate::wall::WallPlane;
-use crate::{BodyState, Material};
+use crate::{BodyState, ContactLaw};
 
 /// How a step advances time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// The basic system, lines 2 to 9 in their order, explicit in rotation.
+    /// Fly – push – fly: exact flight for half a step, a kick by the contact forces at that place,
+    /// exact flight for the other half. Second order, symplectic where the forces are conservative.
     #[default]
+    Splitting,
+    /// The basic system, lines 2 to 9 in their order, explicit in rotation.
     Euler,
 }
 
@@ -20,6 +24,7 @@ impl Integrator {
     /// Its name in scene files.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Splitting => "splitting",
             Self::Euler => "euler",
         }
     }
@@ -36,6 +41,9 @@ pub struct Model {
     pub dt: f64,
     /// How a step advances time.
     pub integrator: Integrator,
+    /// Refine steps in contact until the energy that a part of them leaves unaccounted for is
+    /// below this part of the energy in play.
+    pub energy_tolerance: Option<f64>,
     /// The walls; none is free space.
     pub walls: Vec<WallPlane>,
     /// One entry a body.
@@ -55,8 +63,14 @@ pub struct BodyModel {
     pub inertia: DMat3,
     /// I₀⁻¹, with zero along axes that carry no inertia (1/(kg·m²)).
     pub inverse_inertia: DMat3,
+    /// The principal moments of `inverse_inertia`, in the order of the shape's principal axes.
+    pub inverse_moments: DVec3,
+    /// How drag slows the body where its mass is not carried by equal particles.
+    pub drag_modes: Option<DragModes>,
     /// The contact law against each wall, in the order of [`Model::walls`].
-    pub contacts: Vec<Material>,
+    pub contacts: Vec<ContactLaw>,
+    /// Whether the force of any of these contacts depends on velocity.
+    pub is_damped: bool,
 }
 
 impl BodyModel {
@@ -74,6 +88,11 @@ impl BodyModel {
         let arm = rotation * self.shape.particles().get(index);
         let omega = self.angular_velocity(rotation, state.angular_momentum);
         (state.position + arm, state.velocity + omega.cross(arm))
+    }
+
+    /// No particle is farther from the centre of mass than this (m), whatever rounding does.
+    pub fn reach(&self) -> f64 {
+        self.shape.radius() * (1.0 + 1e-9)
     }
 
     /// The mass of one particle, m = M/N (kg).

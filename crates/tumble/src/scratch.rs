@@ -2,11 +2,17 @@
 
 use glam::DVec3;
 
+use crate::FrictionSpring;
+
 /// Room for what is derived within a step. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     /// Forces and torques of the latest evaluation, one entry a body.
     pub forces: Vec<BodyForces>,
+    /// The friction springs that go on from this evaluation, one list a body.
+    pub springs: Vec<Vec<FrictionSpring>>,
+    /// Friction springs of one body to go back to.
+    pub(crate) backup: Vec<FrictionSpring>,
 }
 
 impl Scratch {
@@ -14,6 +20,7 @@ impl Scratch {
     pub(crate) fn clear(&mut self, body_count: usize) {
         self.forces.clear();
         self.forces.resize(body_count, BodyForces::default());
+        self.springs.resize_with(body_count, Vec::new);
     }
 }
 
@@ -46,8 +53,14 @@ pub struct BodyForces {
     pub gravity: Wrench,
     /// Drag of the medium.
     pub drag: Wrench,
-    /// Contact with the walls.
-    pub contact: Wrench,
+    /// The normal springs of contacts.
+    pub spring: Wrench,
+    /// The dashpots of contacts, normal and tangential.
+    pub dashpot: Wrench,
+    /// The tangential springs of contacts.
+    pub friction: Wrench,
+    /// Energy that slipping and released friction springs lose in this evaluation (J).
+    pub slip: f64,
     /// Depth of the deepest particle in contact (m), 0 in flight.
     pub max_depth: f64,
 }
@@ -55,6 +68,16 @@ pub struct BodyForces {
 impl BodyForces {
     /// Lines 3 and 4: total force F = Σ fᵢ and total torque τ = Σ (xᵢ − x) × fᵢ.
     pub fn total(&self) -> Wrench {
-        self.gravity + self.drag + self.contact
+        self.gravity + self.drag + self.contact()
+    }
+
+    /// What the walls do, by spring, dashpot and friction together.
+    pub fn contact(&self) -> Wrench {
+        self.spring + self.dashpot + self.friction
+    }
+
+    /// Forgets the walls.
+    pub(crate) fn clear_contact(&mut self) {
+        *self = Self { gravity: self.gravity, drag: self.drag, ..Self::default() };
     }
 }

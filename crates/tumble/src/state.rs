@@ -11,12 +11,14 @@ pub struct State {
     pub time: f64,
     /// One entry a body.
     pub bodies: Vec<BodyState>,
+    /// The friction springs of each body, sorted by wall and particle.
+    pub springs: Vec<Vec<FrictionSpring>>,
     /// What the run has lost or met so far.
     pub tally: Tally,
 }
 
 /// The state of one body.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {
     /// Centre of mass x (m).
     pub position: DVec3,
@@ -24,8 +26,39 @@ pub struct BodyState {
     pub velocity: DVec3,
     /// Orientation q, a unit quaternion that turns body axes into world axes.
     pub orientation: DQuat,
+    /// What rounding has taken from q so far, to be given back: it keeps a million small turns as
+    /// exact as one (compensated summation, W. Kahan, Comm. ACM 8 (1965) 40).
+    pub orientation_rest: DQuat,
     /// Angular momentum L about the centre of mass, world axes (kg·m²/s).
     pub angular_momentum: DVec3,
+}
+
+impl Default for BodyState {
+    /// At rest at the origin.
+    fn default() -> Self {
+        Self {
+            position: DVec3::ZERO,
+            velocity: DVec3::ZERO,
+            orientation: DQuat::IDENTITY,
+            orientation_rest: NO_REST,
+            angular_momentum: DVec3::ZERO,
+        }
+    }
+}
+
+/// Nothing to be given back.
+pub(crate) const NO_REST: DQuat = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+
+/// The tangential spring of one particle in contact with one wall.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrictionSpring {
+    /// Which wall, as an index into [`Model::walls`](crate::Model::walls).
+    pub wall: u32,
+    /// Which particle of the body.
+    pub particle: u32,
+    /// Where on the wall the spring is held (m): where the particle arrived, or has slipped to.
+    /// Only its part along the wall counts.
+    pub anchor: DVec3,
 }
 
 /// Sums and extremes over the steps taken so far.
@@ -39,4 +72,23 @@ pub struct Tally {
     pub slip: f64,
     /// Deepest contact met so far (m).
     pub max_depth: f64,
+    /// How often contact forces kicked a body: what contact has cost.
+    pub evaluations: u64,
+}
+
+impl Tally {
+    /// Everything that was lost (J).
+    pub fn lost(&self) -> f64 {
+        self.drag + self.dashpot + self.slip
+    }
+}
+
+impl std::ops::AddAssign for Tally {
+    fn add_assign(&mut self, more: Self) {
+        self.drag += more.drag;
+        self.dashpot += more.dashpot;
+        self.slip += more.slip;
+        self.max_depth = self.max_depth.max(more.max_depth);
+        self.evaluations += more.evaluations;
+    }
 }

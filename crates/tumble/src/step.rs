@@ -1,20 +1,31 @@
-//! The step: every line of the basic system, in its order.
+//! The step, as a list of stages.
 
 use crate::{Integrator, Model, Scratch, State, StepError, stage};
 
 /// Advances `state` by one step of `model.dt`.
 ///
-/// The numbers are those of `docs/theory.md`; line 1, the mass properties, is done once per shape.
+/// The numbers are the lines of the basic system in `docs/theory.md`; line 1, the mass properties, is
+/// done once per shape.
 ///
 /// # Errors
 /// [`StepError`] when the new state cannot be trusted.
 pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(), StepError> {
-    match model.integrator {
-        Integrator::Euler => {
-            scratch.clear(model.bodies.len());
+    let h = model.dt;
+    scratch.clear(model.bodies.len());
+    match (model.integrator, model.energy_tolerance) {
+        (Integrator::Splitting, None) => {
+            stage::fly(model, state, 0.5 * h);
+            stage::contact(model, state, scratch, h);
+            stage::kick(model, state, scratch, h);
+            stage::fly(model, state, 0.5 * h);
+        }
+        (Integrator::Splitting, Some(tolerance)) => {
+            stage::refine(model, state, scratch, tolerance); // the same, in parts
+        }
+        (Integrator::Euler, _) => {
             stage::gravity(model, scratch); // 2
             stage::drag(model, state, scratch); // 8
-            stage::contact(model, state, scratch); // 9, with 3 and 4
+            stage::contact(model, state, scratch, 0.0); // 9, with 3 and 4
             stage::euler(model, state, scratch); // 5 to 7
         }
     }

@@ -1,5 +1,7 @@
 //! `integrator = "euler"` is the basic system: held against a plain loop over particles.
 
+#![allow(clippy::unwrap_used)]
+
 mod yardstick;
 
 use proptest::prelude::*;

@@ -61,13 +61,12 @@ impl PrincipalAxes {
     /// rounding of the particles' coordinates alone can produce), become exactly zero: a line of
     /// particles has no inertia about itself, and nothing may spin it up about that axis.
     pub fn of(tensor: DMat3, floor: f64) -> Self {
-        let (values, vectors) = diagonalise(tensor);
+        let (values, vectors) = diagonalise(tensor.to_cols_array_2d());
         let mut order = [0, 1, 2];
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
         let threshold = (RELATIVE_ZERO * values[order[2]]).max(floor);
         let moments = order.map(|i| if values[i] > threshold { values[i] } else { 0.0 });
-        let mut axes =
-            DMat3::from_cols(vectors.col(order[0]), vectors.col(order[1]), vectors.col(order[2]));
+        let mut axes = DMat3::from_cols_array_2d(&order.map(|i| vectors[i]));
         if axes.determinant() < 0.0 {
             axes.z_axis = -axes.z_axis;
         }
@@ -89,50 +88,53 @@ impl PrincipalAxes {
 /// A principal moment below this part of the largest is rounding.
 const RELATIVE_ZERO: f64 = 1e-12;
 
-/// Eigenvalues and eigenvectors (columns) of a symmetric matrix.
-fn diagonalise(tensor: DMat3) -> ([f64; 3], DMat3) {
-    let mut a = [tensor.x_axis.to_array(), tensor.y_axis.to_array(), tensor.z_axis.to_array()];
-    let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    // a sweep squares the off-diagonal part: 3x3 is done in 4 or 5, the bound is for NaN
-    for _sweep in 0..12 {
-        if a[0][1] == 0.0 && a[0][2] == 0.0 && a[1][2] == 0.0 {
+/// Eigenvalues and eigenvectors (one a row) of a symmetric matrix, by cyclic Jacobi rotations.
+pub(crate) fn diagonalise<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
+    let mut v = [[0.0; N]; N];
+    for (i, row) in v.iter_mut().enumerate() {
+        row[i] = 1.0;
+    }
+    // a sweep squares the off-diagonal part: a few are enough, the bound is for NaN
+    for _sweep in 0..16 {
+        let mut done = true;
+        for p in 0..N {
+            for q in p + 1..N {
+                done &= a[p][q] == 0.0;
+                rotate(&mut a, &mut v, p, q);
+            }
+        }
+        if done {
             break;
         }
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            rotate(&mut a, &mut v, p, q);
-        }
     }
-    ([a[0][0], a[1][1], a[2][2]], DMat3::from_cols_array_2d(&v))
+    (std::array::from_fn(|i| a[i][i]), v)
 }
 
 /// One Jacobi rotation in the plane (p, q) that makes `a[p][q]` zero; `v` holds the vectors as rows.
-fn rotate(a: &mut [[f64; 3]; 3], v: &mut [[f64; 3]; 3], p: usize, q: usize) {
+fn rotate<const N: usize>(a: &mut [[f64; N]; N], v: &mut [[f64; N]; N], p: usize, q: usize) {
     let off = a[p][q];
+    a[p][q] = 0.0;
+    a[q][p] = 0.0;
     // below rounding of both diagonal entries: nothing left to turn
-    if off == 0.0 || (a[p][p] + off == a[p][p] && a[q][q] + off == a[q][q]) {
-        a[p][q] = 0.0;
-        a[q][p] = 0.0;
+    if a[p][p] + off == a[p][p] && a[q][q] + off == a[q][q] {
         return;
     }
     let theta = (a[q][q] - a[p][p]) / (2.0 * off);
-    let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+    let t = 1f64.copysign(theta) / (theta.abs() + (theta * theta + 1.0).sqrt());
     let c = 1.0 / (t * t + 1.0).sqrt();
     let s = t * c;
     a[p][p] -= t * off;
     a[q][q] += t * off;
-    a[p][q] = 0.0;
-    a[q][p] = 0.0;
-    let r = 3 - p - q;
-    let (arp, arq) = (a[r][p], a[r][q]);
-    a[r][p] = c * arp - s * arq;
-    a[p][r] = a[r][p];
-    a[r][q] = s * arp + c * arq;
-    a[q][r] = a[r][q];
-    for k in 0..3 {
-        let (vp, vq) = (v[p][k], v[q][k]);
-        v[p][k] = c * vp - s * vq;
-        v[q][k] = s * vp + c * vq;
+    for r in (0..N).filter(|&r| r != p && r != q) {
+        let (arp, arq) = (a[r][p], a[r][q]);
+        a[r][p] = c * arp - s * arq;
+        a[p][r] = a[r][p];
+        a[r][q] = s * arp + c * arq;
+        a[q][r] = a[r][q];
     }
+    let (vp, vq) = (v[p], v[q]);
+    v[p] = std::array::from_fn(|k| c * vp[k] - s * vq[k]);
+    v[q] = std::array::from_fn(|k| s * vp[k] + c * vq[k]);
 }
 
 #[cfg(test)]

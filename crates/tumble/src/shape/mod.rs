@@ -12,6 +12,7 @@ mod sampling;
 pub use body_shape::{MassModel, ParticleMoments, Shape, ShapeError};
 pub use closedness::{Closedness, EdgeFault, FaultyEdge};
 pub use integrals::{Integrals, OpenMesh, ShellError};
+pub(crate) use mass::diagonalise;
 pub use mass::{MassProperties, PrincipalAxes};
 pub use mesh::{Mesh, MeshError};
 pub use particles::Particles;

@@ -2,20 +2,26 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State};
+use crate::state::NO_REST;
+use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally, Wrench};
 
 /// Advances every body by h with the forces of the start of the step.
-pub fn euler(model: &Model, state: &mut State, scratch: &Scratch) {
-    for ((body, body_state), forces) in
-        model.bodies.iter().zip(&mut state.bodies).zip(&scratch.forces)
-    {
-        state.tally.drag += advance(body, body_state, forces, model.dt);
-        state.tally.max_depth = state.tally.max_depth.max(forces.max_depth);
+pub fn euler(model: &Model, state: &mut State, scratch: &mut Scratch) {
+    for (index, body) in model.bodies.iter().enumerate() {
+        let forces = &scratch.forces[index];
+        advance(body, &mut state.bodies[index], forces, model.dt, &mut state.tally);
+        std::mem::swap(&mut state.springs[index], &mut scratch.springs[index]);
     }
 }
 
-/// Advances one body and returns the energy that drag took from it (J).
-fn advance(body: &BodyModel, state: &mut BodyState, forces: &BodyForces, h: f64) -> f64 {
+/// Advances one body.
+fn advance(
+    body: &BodyModel,
+    state: &mut BodyState,
+    forces: &BodyForces,
+    h: f64,
+    tally: &mut Tally,
+) {
     let old_velocity = state.velocity;
     let old_omega = angular_velocity(body, state);
     let total = forces.total();
@@ -27,6 +33,7 @@ fn advance(body: &BodyModel, state: &mut BodyState, forces: &BodyForces, h: f64)
     // 6: the quaternion turns with the angular velocity of the start of the step
     let spin = DQuat::from_xyzw(old_omega.x, old_omega.y, old_omega.z, 0.0);
     state.orientation = (state.orientation + spin * state.orientation * (0.5 * h)).normalize();
+    state.orientation_rest = NO_REST;
 
     // 7: angular momentum; ω follows from it through the inertia turned by the new orientation
     state.angular_momentum += total.torque * h;
@@ -35,7 +42,15 @@ fn advance(body: &BodyModel, state: &mut BodyState, forces: &BodyForces, h: f64)
     // the work of a force over the step is F·h times the mean velocity: exactly its kinetic energy
     let mean_velocity = 0.5 * (old_velocity + state.velocity);
     let mean_omega = 0.5 * (old_omega + new_omega);
-    -h * (forces.drag.force.dot(mean_velocity) + forces.drag.torque.dot(mean_omega))
+    let lost =
+        |wrench: &Wrench| -h * (wrench.force.dot(mean_velocity) + wrench.torque.dot(mean_omega));
+    *tally += Tally {
+        drag: lost(&forces.drag),
+        dashpot: lost(&forces.dashpot),
+        slip: forces.slip,
+        max_depth: forces.max_depth,
+        evaluations: u64::from(forces.max_depth > 0.0),
+    };
 }
 
 /// 7: I⁻¹ = R I₀⁻¹ Rᵀ, ω = I⁻¹ L.

@@ -4,11 +4,17 @@ mod check;
 mod contact;
 mod drag;
 mod euler;
+mod fly;
 mod gravity;
+mod kick;
+mod refine;
 
 pub use check::check;
+pub(crate) use contact::Placed;
 pub use contact::contact;
-pub(crate) use contact::elastic_energy;
 pub use drag::drag;
 pub use euler::euler;
+pub use fly::fly;
 pub use gravity::gravity;
+pub use kick::kick;
+pub use refine::refine;

@@ -1,0 +1,75 @@
+//! How long a step may be.
+
+use glam::DMat3;
+
+use crate::shape::diagonalise;
+use crate::{BodyModel, ContactLaw, Model, WallPlane};
+
+/// The longest stable step, and the body that sets it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CriticalStep {
+    /// Step h (s) above which contact is unstable.
+    pub dt: f64,
+    /// Name of the body with the fastest contact.
+    pub body: String,
+}
+
+/// The longest step with which contact is stable; `None` where nothing can touch.
+///
+/// A particle of mass m on a spring k oscillates at ω = √(k/m), and a step above 2/ω makes it grow. With a
+/// dashpot of damping ratio ζ the bound is (2/ω)(√(1 + ζ²) − ζ). However many particles of a body are in
+/// contact, its stiffness over its mass is no more than that of one of them, and so is its rotational
+/// stiffness over its inertia; with mass spread otherwise the largest ratio over all motions takes the place
+/// of 1/m. Walls that meet in a corner add up; of two that face each other the stiffer counts.
+pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
+    let of_body = |body: &BodyModel| {
+        let per_mass = match &body.drag_modes {
+            Some(modes) => modes.fastest(),
+            None => 1.0 / body.particle_mass(),
+        };
+        let sum = |normal: fn(&ContactLaw) -> f64, tangential: fn(&ContactLaw) -> f64| {
+            stiffest(&model.walls, &body.contacts, normal, tangential) * per_mass
+        };
+        let omega = sum(
+            |law| law.stiffness,
+            |law| if law.friction > 0.0 { law.friction_spring } else { 0.0 },
+        )
+        .sqrt();
+        let rate = sum(
+            |law| law.damping,
+            |law| if law.friction > 0.0 { law.friction_damping } else { 0.0 },
+        );
+        let zeta = if omega > 0.0 { 0.5 * rate / omega } else { 0.0 };
+        // √(1 + ζ²) − ζ without cancellation
+        2.0 / omega / ((1.0 + zeta * zeta).sqrt() + zeta)
+    };
+    let steps = model.bodies.iter().map(|body| (of_body(body), body));
+    let (dt, body) = steps.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    dt.is_finite().then(|| CriticalStep { dt, body: body.name.clone() })
+}
+
+/// The largest eigenvalue of Σ (normal n nᵀ + tangential (1 − n nᵀ)) over walls that can be
+/// touched at once.
+fn stiffest(
+    walls: &[WallPlane],
+    laws: &[ContactLaw],
+    normal: fn(&ContactLaw) -> f64,
+    tangential: fn(&ContactLaw) -> f64,
+) -> f64 {
+    let mut sum = DMat3::ZERO;
+    for (i, (wall, law)) in walls.iter().zip(laws).enumerate() {
+        let (mut along, mut across) = (normal(law), tangential(law));
+        // of walls that face each other, the later one counts for what it has more
+        let facing =
+            walls[..i].iter().zip(laws).find(|(w, _)| w.normal.dot(wall.normal) < -1.0 + 1e-9);
+        if let Some((_, other)) = facing {
+            along = (along - normal(other)).max(0.0);
+            across = (across - tangential(other)).max(0.0);
+        }
+        let n = wall.normal;
+        let outer = DMat3::from_cols(n * n.x, n * n.y, n * n.z);
+        sum += outer * along + (DMat3::IDENTITY - outer) * across;
+    }
+    let (values, _) = diagonalise(sum.to_cols_array_2d());
+    values.into_iter().fold(0.0, f64::max)
+}

@@ -1,0 +1,39 @@
+//! The kick: contact forces change the momenta of bodies that stand still for it.
+
+use super::contact::Placed;
+use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally};
+
+/// v ← v + F h/M, L ← L + τ h, with the contact forces of [`contact`](super::contact) over the time `h` (s).
+pub fn kick(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
+    for (index, body) in model.bodies.iter().enumerate() {
+        let forces = &scratch.forces[index];
+        state.tally += kick_body(body, &mut state.bodies[index], forces, h);
+        std::mem::swap(&mut state.springs[index], &mut scratch.springs[index]);
+    }
+}
+
+/// Kicks one body; returns what its contacts lost.
+///
+/// The place stands still, so a wrench gives the body exactly its power at the mean of the old and
+/// new velocities, times h.
+pub(crate) fn kick_body(
+    body: &BodyModel,
+    state: &mut BodyState,
+    forces: &BodyForces,
+    h: f64,
+) -> Tally {
+    if forces.max_depth == 0.0 {
+        return Tally { slip: forces.slip, ..Tally::default() };
+    }
+    let total = forces.contact();
+    let mean = Placed::new(body, state).half_kicked(&total, h);
+    state.velocity += total.force * (h / body.mass);
+    state.angular_momentum += total.torque * h;
+    Tally {
+        dashpot: h * mean.power_lost(&forces.dashpot),
+        slip: forces.slip,
+        max_depth: forces.max_depth,
+        evaluations: 1,
+        ..Tally::default()
+    }
+}

@@ -1,0 +1,158 @@
+//! Steps in contact, halved until their energy adds up.
+//!
+//! Touching and leaving are kinks of the force, and a step across a kink is only as good as it is
+//! short. A body in contact therefore advances in parts of h: a part whose energy does not add up is
+//! taken back and halved, one that does may be followed by a longer one. Where contacts are springs
+//! alone and drag is weak, large parts are composed of nine leaps to order six (W. Kahan & R.-C. Li,
+//! Math. Comp. 66 (1997) 1089, s9odr6a), some of which go back in time; dashpots and slip cannot, so
+//! there a part is one leap of order two.
+
+use super::contact::{Placed, contact_body};
+use super::fly::fly_body;
+use super::kick::kick_body;
+use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, Scratch, State, Tally};
+
+/// The smallest part of a step, as a power of one half.
+const FINEST: u32 = 24;
+/// Parts of at least this power of one half are composed to order six.
+const COMPOSED: u32 = 4;
+/// Weights of the nine leaps.
+const WEIGHTS: [f64; 9] = [W1, W2, W3, W4, W5, W4, W3, W2, W1];
+const W1: f64 = 0.392_161_444_007_314_139_28;
+const W2: f64 = 0.332_599_136_789_359_438_60;
+const W3: f64 = -0.706_246_172_557_639_359_81;
+const W4: f64 = 0.082_213_596_293_550_800_23;
+const W5: f64 = 0.798_543_990_934_829_963_40;
+
+/// Advances every body by one step, with what a part of it leaves unaccounted for below
+/// `tolerance` of the energy in play.
+pub fn refine(model: &Model, state: &mut State, scratch: &mut Scratch, tolerance: f64) {
+    for (index, body) in model.bodies.iter().enumerate() {
+        let mut mover = Mover {
+            model,
+            body,
+            state: &mut state.bodies[index],
+            springs: &mut state.springs[index],
+            forces: &mut scratch.forces[index],
+            next: &mut scratch.springs[index],
+        };
+        state.tally += if mover.stays_clear() {
+            mover.fly(model.dt)
+        } else {
+            mover.in_parts(&mut scratch.backup, tolerance)
+        };
+    }
+}
+
+/// One body, and room to move it.
+struct Mover<'a> {
+    model: &'a Model,
+    body: &'a BodyModel,
+    state: &'a mut BodyState,
+    springs: &'a mut Vec<FrictionSpring>,
+    forces: &'a mut BodyForces,
+    next: &'a mut Vec<FrictionSpring>,
+}
+
+/// Energy of one body (J).
+#[derive(Clone, Copy)]
+struct Account {
+    kinetic: f64,
+    gravitational: f64,
+    elastic: f64,
+}
+
+impl Account {
+    fn total(self) -> f64 {
+        self.kinetic + self.gravitational + self.elastic
+    }
+
+    /// What doubles of this size cannot tell from zero.
+    fn rounding(self) -> f64 {
+        16.0 * f64::EPSILON * (self.kinetic + self.gravitational.abs() + self.elastic)
+    }
+}
+
+impl Mover<'_> {
+    /// Whether no wall can be reached within a step.
+    fn stays_clear(&self) -> bool {
+        let h = self.model.dt;
+        let way = h * (self.state.velocity.length() + h * self.model.gravity.length());
+        let reach = way + self.body.shape.radius();
+        let clear = |wall: &crate::WallPlane| wall.depth(self.state.position) + reach < 0.0;
+        self.springs.is_empty() && self.model.walls.iter().all(clear)
+    }
+
+    fn in_parts(&mut self, backup: &mut Vec<FrictionSpring>, tolerance: f64) -> Tally {
+        let mut lost = Tally::default();
+        let mut start = self.account();
+        let in_play = start.kinetic + start.elastic;
+        // places within the step, and sizes of parts, in units of the finest part
+        let whole = 1u64 << FINEST;
+        let (mut at, mut size) = (0, whole);
+        while at < whole {
+            let before = *self.state;
+            backup.clone_from(self.springs);
+            let part = self.part(size);
+            let end = self.account();
+            let off = end.total() + part.lost() - start.total();
+            let bound = (tolerance * in_play.max(end.kinetic + end.elastic))
+                .max(start.rounding() + end.rounding());
+            let touched = part.max_depth > 0.0 || start.elastic > 0.0 || end.elastic > 0.0;
+            lost.evaluations += part.evaluations;
+            if touched && off.abs() > bound && size > 1 {
+                *self.state = before;
+                self.springs.clone_from(backup);
+                size /= 2;
+                continue;
+            }
+            lost += Tally { evaluations: 0, ..part };
+            start = end;
+            at += size;
+            // twice as long, where that ends on a multiple of itself
+            if at % (2 * size) == 0 && at + 2 * size <= whole {
+                size *= 2;
+            }
+        }
+        lost
+    }
+
+    /// One part of the step.
+    fn part(&mut self, size: u64) -> Tally {
+        let h = self.model.dt * (size as f64 / (1u64 << FINEST) as f64);
+        let slow = self.model.velocity_damping_stiffness / self.body.particle_mass() * h < 0.1;
+        let elastic = self.body.contacts.iter().all(|law| law.is_elastic());
+        if !(elastic && slow && size >> (FINEST - COMPOSED) > 0) {
+            return self.leap(h);
+        }
+        let mut lost = Tally::default();
+        for weight in WEIGHTS {
+            lost += self.leap(weight * h);
+        }
+        lost
+    }
+
+    /// Fly – push – fly.
+    fn leap(&mut self, h: f64) -> Tally {
+        let mut lost = self.fly(0.5 * h);
+        contact_body(self.model, self.body, self.state, self.springs, (self.forces, self.next), h);
+        lost += kick_body(self.body, self.state, self.forces, h);
+        std::mem::swap(self.springs, self.next);
+        lost += self.fly(0.5 * h);
+        lost
+    }
+
+    fn fly(&mut self, h: f64) -> Tally {
+        let drag = fly_body(self.model, self.body, self.state, h);
+        Tally { drag, ..Tally::default() }
+    }
+
+    fn account(&self) -> Account {
+        let place = Placed::new(self.body, self.state);
+        Account {
+            kinetic: place.kinetic_energy(self.state.angular_momentum),
+            gravitational: -self.body.mass * self.model.gravity.dot(self.state.position),
+            elastic: place.elastic_energy(self.model, self.springs),
+        }
+    }
+}
