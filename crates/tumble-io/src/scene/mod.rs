@@ -22,3 +22,4 @@ pub use description::{
 pub use load::{Loaded, load_builtin, load_file, load_text};
 pub use problem::SceneError;
 pub use reader::nearest;
+pub(crate) use write::HEADER;

@@ -1,5 +1,7 @@
 //! What is wrong with a scene, and where.
 
+use std::ops::Range;
+
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
@@ -14,8 +16,11 @@ pub struct Source {
     pub text: String,
 }
 
+/// More problems than this are counted, not shown.
+const MOST_SHOWN: usize = 100;
+
 /// One thing that is wrong.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     place: Place,
     key: String,
@@ -46,6 +51,7 @@ pub struct SceneError {
 impl SceneError {
     pub(super) fn new(sources: Vec<Source>, mut problems: Vec<Problem>) -> Self {
         problems.sort_by_key(|p| (p.place.source, p.place.span.start));
+        problems.dedup();
         Self { sources, problems }
     }
 
@@ -54,12 +60,18 @@ impl SceneError {
         self.problems.len()
     }
 
-    /// All problems, each with file, line, column and the text it is about; with colours or not.
+    /// All problems (of very many, the first hundred), each with file, line, column and the text
+    /// it is about; with colours or not.
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let renderer = renderer.decor_style(DecorStyle::Ascii);
-        let reports: Vec<String> =
-            self.problems.iter().map(|problem| renderer.render(&[self.group(problem)])).collect();
+        let shown = self.problems.iter().take(MOST_SHOWN);
+        let mut reports: Vec<String> =
+            shown.map(|problem| renderer.render(&[self.group(problem)])).collect();
+        let hidden = self.problems.len().saturating_sub(MOST_SHOWN);
+        if hidden > 0 {
+            reports.push(format!("and {hidden} more problems"));
+        }
         reports.join("\n\n")
     }
 
@@ -72,10 +84,12 @@ impl SceneError {
         let group = match self.sources.get(problem.place.source) {
             Some(source) => {
                 let span = on_characters(&source.text, problem.place.span.clone());
+                let (line, number, within) = line_of(&source.text, span);
                 Level::ERROR.primary_title(title).element(
-                    Snippet::source(source.text.as_str())
+                    Snippet::source(line)
+                        .line_start(number)
                         .path(source.name.as_str())
-                        .annotation(AnnotationKind::Primary.span(span)),
+                        .annotation(AnnotationKind::Primary.span(within)),
                 )
             }
             None => Group::with_title(Level::ERROR.primary_title(title)),
@@ -88,7 +102,7 @@ impl SceneError {
 }
 
 /// The span, cut to the text's end and its first line, and widened to whole characters.
-fn on_characters(text: &str, span: std::ops::Range<usize>) -> std::ops::Range<usize> {
+fn on_characters(text: &str, span: Range<usize>) -> Range<usize> {
     let mut start = span.start.min(text.len());
     while !text.is_char_boundary(start) {
         start -= 1;
@@ -100,6 +114,15 @@ fn on_characters(text: &str, span: std::ops::Range<usize>) -> std::ops::Range<us
     // a table or a long array would quote the whole of itself
     let line_end = text[start..end].find('\n').map_or(end, |at| start + at);
     start..line_end
+}
+
+/// The line in which a span lies, its number from 1, and the span within it. Only this line is
+/// handed to the renderer, which would otherwise look through the whole text for every problem.
+fn line_of(text: &str, span: Range<usize>) -> (&str, usize, Range<usize>) {
+    let start = text[..span.start].rfind('\n').map_or(0, |at| at + 1);
+    let number = text[..start].bytes().filter(|&byte| byte == b'\n').count() + 1;
+    let end = text[span.start..].find('\n').map_or(text.len(), |at| span.start + at);
+    (&text[start..end], number, span.start - start..span.end - start)
 }
 
 impl std::fmt::Display for SceneError {

@@ -60,14 +60,13 @@ impl<'a> Reader<'a> {
         Self { entries, place: node.place.clone(), path, asked: RefCell::default(), problems }
     }
 
-    /// Where the table itself stands.
-    pub fn place(&self) -> &Place {
-        &self.place
-    }
-
     /// The dotted name of one of its keys.
     pub fn key(&self, key: &str) -> String {
-        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+        match (self.path.as_str(), key) {
+            ("", key) => key.to_owned(),
+            (path, "") => path.to_owned(),
+            (path, key) => format!("{path}.{key}"),
+        }
     }
 
     /// Reports a problem with one of its keys, or with the table where the key is not given.
@@ -89,6 +88,11 @@ impl<'a> Reader<'a> {
     /// Whether the key is given.
     pub fn has(&self, key: &str) -> bool {
         self.entries.iter().any(|entry| entry.key == key)
+    }
+
+    /// Takes keys as known, for a table in which something else keeps them from being read.
+    pub fn know(&self, keys: &[&'static str]) {
+        self.asked.borrow_mut().extend(keys);
     }
 
     fn get(&self, key: &'static str) -> Option<&'a Node> {
@@ -270,6 +274,7 @@ impl<'a> Reader<'a> {
 
     /// Of keys that exclude each other, the one that is given. More than one is a problem.
     pub fn only_one(&self, keys: &[&'static str]) -> Option<&'static str> {
+        self.know(keys);
         let given: Vec<_> = keys.iter().filter(|key| self.has(key)).copied().collect();
         if given.len() > 1 {
             let rest = quoted_keys(&given[..given.len() - 1]);

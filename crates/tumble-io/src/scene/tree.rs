@@ -8,6 +8,9 @@ use toml::de::{DeTable, DeValue};
 
 use super::problem::{Problem, Source};
 
+/// A key of more parts than this leads nowhere.
+const MOST_PARTS: usize = 32;
+
 /// Where something stands: which source, and which bytes of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
@@ -93,8 +96,7 @@ fn from_value(value: Spanned<DeValue<'_>>, source: usize) -> Node {
         DeValue::String(text) => Value::String(text.into_owned()),
         DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
             Ok(integer) => Value::Integer(integer),
-            // too large for an integer: a float says the same within rounding
-            Err(_) => Value::Number(integer.as_str().parse().unwrap_or(f64::NAN)),
+            Err(_) => Value::Number(large(integer.as_str(), integer.radix())),
         },
         DeValue::Float(float) => Value::Number(float.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(boolean) => Value::Boolean(boolean),
@@ -105,6 +107,15 @@ fn from_value(value: Spanned<DeValue<'_>>, source: usize) -> Node {
         DeValue::Table(table) => from_table(table, source),
     };
     Node { value, place }
+}
+
+/// An integer too large for an `i64`: a float says the same within rounding.
+fn large(digits: &str, radix: u32) -> f64 {
+    let digit = |c: char| c.to_digit(radix).map(f64::from);
+    match radix {
+        10 => digits.parse().unwrap_or(f64::NAN),
+        _ => digits.chars().filter_map(digit).fold(0.0, |x, d| x * f64::from(radix) + d),
+    }
 }
 
 /// Lays `KEY=VALUE` over the tree. KEY is dotted; `body.scale` reaches every body, `body.0.scale`
@@ -123,10 +134,9 @@ pub fn set(root: &mut Node, assignment: &str, source: usize) -> Result<Source, P
         Err(_) => Value::String(text.trim().to_owned()),
     };
     let path: Vec<&str> = key.trim().split('.').map(str::trim).collect();
-    if path.iter().any(|part| part.is_empty()) {
-        let message =
-            format!("`{key}` is no key; write it as `dt` or `collision.collision_stiffness`");
-        return Err(Problem::new(Place { source, span: 0..key.len() }, "", message));
+    if path.iter().any(|part| part.is_empty()) || path.len() > MOST_PARTS {
+        let message = "is no key; write it as `dt` or `collision.collision_stiffness`".to_owned();
+        return Err(Problem::new(Place { source, span: 0..key.len() }, key, message));
     }
     let node = Node { value: relocate(value, &place), place };
     let key_place = Place { source, span: 0..key.len() };
