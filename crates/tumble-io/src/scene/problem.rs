@@ -76,10 +76,11 @@ impl SceneError {
     }
 
     fn group<'a>(&'a self, problem: &'a Problem) -> Group<'a> {
+        let message = cut(&problem.message, 2000);
         let title = if problem.key.is_empty() {
-            problem.message.clone()
+            message
         } else {
-            format!("`{}` {}", problem.key, problem.message)
+            format!("`{}` {message}", cut(&problem.key, 200))
         };
         let group = match self.sources.get(problem.place.source) {
             Some(source) => {
@@ -114,6 +115,16 @@ fn on_characters(text: &str, span: Range<usize>) -> Range<usize> {
     // a table or a long array would quote the whole of itself
     let line_end = text[start..end].find('\n').map_or(end, |at| start + at);
     start..line_end
+}
+
+/// At most `most` characters of a text that may come from the file, none of them a control.
+fn cut(text: &str, most: usize) -> String {
+    let plain = |c: char| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c };
+    let mut cut: String = text.chars().take(most).map(plain).collect();
+    if text.chars().nth(most).is_some() {
+        cut.push('…');
+    }
+    cut
 }
 
 /// The line in which a span lies, its number from 1, and the span within it. Only this line is

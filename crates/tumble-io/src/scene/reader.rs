@@ -39,6 +39,8 @@ impl Range {
 
 /// A table while it is read. Keys that nobody asked for are reported by [`Reader::finish`].
 pub struct Reader<'a> {
+    /// Whether this is a table at all; of anything else, nothing more needs to be said.
+    is_table: bool,
     entries: &'a [Entry],
     place: Place,
     path: String,
@@ -57,7 +59,9 @@ impl<'a> Reader<'a> {
                 &[]
             }
         };
-        Self { entries, place: node.place.clone(), path, asked: RefCell::default(), problems }
+        let is_table = matches!(node.value, Value::Table(_));
+        let (place, asked) = (node.place.clone(), RefCell::default());
+        Self { is_table, entries, place, path, asked, problems }
     }
 
     /// The dotted name of one of its keys.
@@ -71,7 +75,9 @@ impl<'a> Reader<'a> {
 
     /// Reports a problem with one of its keys, or with the table where the key is not given.
     pub fn problem(&self, key: &str, message: impl Into<String>) {
-        self.report(Problem::new(self.place_of(key), self.key(key), message));
+        if self.is_table {
+            self.report(Problem::new(self.place_of(key), self.key(key), message));
+        }
     }
 
     /// Reports a problem.
@@ -106,7 +112,7 @@ impl<'a> Reader<'a> {
         match number(node) {
             Some(x) if range.allows(x) => Some(x),
             Some(x) => {
-                self.problem(key, format!("must be {}, but is {x}", range.text()));
+                self.problem(key, format!("must be {}, but is {}", range.text(), plain(x)));
                 None
             }
             None => {
@@ -307,6 +313,12 @@ impl<'a> Reader<'a> {
         let message = format!("must be {wanted}, but is {}", node.value.kind());
         self.report(Problem::new(node.place.clone(), self.key(key), message));
     }
+}
+
+/// A number as people write it, without hundreds of zeros.
+fn plain(x: f64) -> String {
+    let long = x.is_finite() && x != 0.0 && !(1e-6..1e15).contains(&x.abs());
+    if long { format!("{x:e}") } else { format!("{x}") }
 }
 
 fn number(node: &Node) -> Option<f64> {
