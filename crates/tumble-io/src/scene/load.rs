@@ -69,10 +69,15 @@ fn read_text(path: &Path) -> Result<String, String> {
     }
     let bytes =
         std::fs::read(path).map_err(|error| format!("cannot read the scene {shown}: {error}"))?;
-    String::from_utf8(bytes).map_err(|error| {
+    let mut text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         format!("{shown} is no scene: a scene is TOML text in UTF-8, and byte {at} is not")
-    })
+    })?;
+    // the byte order mark of some editors would count as a column
+    if text.starts_with('\u{feff}') {
+        text.remove(0);
+    }
+    Ok(text)
 }
 
 /// Reads a scene from text. `folder` is where relative mesh paths start.

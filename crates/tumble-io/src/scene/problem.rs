@@ -133,7 +133,9 @@ fn line_of(text: &str, span: Range<usize>) -> (&str, usize, Range<usize>) {
     let start = text[..span.start].rfind('\n').map_or(0, |at| at + 1);
     let number = text[..start].bytes().filter(|&byte| byte == b'\n').count() + 1;
     let end = text[span.start..].find('\n').map_or(text.len(), |at| span.start + at);
-    (&text[start..end], number, span.start - start..span.end - start)
+    let line = text[start..end].trim_end_matches('\r');
+    let within = |at: usize| (at - start).min(line.len());
+    (line, number, within(span.start)..within(span.end))
 }
 
 impl std::fmt::Display for SceneError {
@@ -143,3 +145,43 @@ impl std::fmt::Display for SceneError {
 }
 
 impl std::error::Error for SceneError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_span_is_cut_to_whole_characters_of_its_first_line() {
+        let text = "äb\ncd\r\nef";
+        assert_eq!(on_characters(text, 1..2), 0..2);
+        assert_eq!(on_characters(text, 2..9), 2..3);
+        assert_eq!(on_characters(text, 90..99), 10..10);
+        assert_eq!(on_characters(text, 5..4), 5..5);
+        assert_eq!(line_of(text, 4..6), ("cd", 2, 0..2));
+        assert_eq!(line_of(text, 6..6), ("cd", 2, 2..2));
+        assert_eq!(line_of(text, 10..10), ("ef", 3, 2..2));
+        assert_eq!(line_of("", 0..0), ("", 1, 0..0));
+    }
+
+    #[test]
+    fn what_comes_from_a_file_is_cut_and_harmless() {
+        assert_eq!(cut("abc", 3), "abc");
+        assert_eq!(cut("abcd", 3), "abc…");
+        assert_eq!(cut("a\u{1b}[31m", 9), "a\u{fffd}[31m");
+    }
+
+    #[test]
+    fn very_many_problems_are_counted() {
+        let at = |start| Place { source: 0, span: start..start + 1 };
+        let problems = (0..150).rev().map(|i| Problem::new(at(i), format!("k{i}"), "is wrong"));
+        // the same problem twice is one
+        let problems = problems.chain([Problem::new(at(0), "k0", "is wrong")]).collect();
+        let source = Source { name: "s".to_owned(), text: "x".repeat(150) };
+        let error = SceneError::new(vec![source], problems);
+        assert_eq!(error.problem_count(), 150);
+        let text = error.to_string();
+        assert!(text.starts_with("error: `k0` is wrong\n --> s:1:1\n"), "{text}");
+        assert!(text.contains("`k99`") && !text.contains("`k100`"));
+        assert!(text.ends_with("and 50 more problems"), "{text}");
+    }
+}

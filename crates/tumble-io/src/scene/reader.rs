@@ -349,3 +349,62 @@ fn quoted(words: &[&str]) -> String {
 fn quoted_keys(keys: &[&str]) -> String {
     keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tree::parse;
+    use super::*;
+
+    /// What is told of `text` when `read` reads it.
+    fn told(text: &str, read: impl FnOnce(&Reader)) -> Vec<String> {
+        let (root, _) = parse(text, 0);
+        let problems = RefCell::default();
+        let reader = Reader::new(&root, String::new(), &problems);
+        read(&reader);
+        reader.finish();
+        problems.into_inner().iter().map(|problem| format!("{problem:?}")).collect()
+    }
+
+    #[test]
+    fn numbers_are_read_within_their_range() {
+        assert!(
+            told("a = 1", |r| assert_eq!(r.number("a", Range::Positive), Some(1.0))).is_empty()
+        );
+        assert!(told("", |r| assert_eq!(r.number("a", Range::Positive), None)).is_empty());
+        for wrong in ["a = 0", "a = nan", "a = \"1\"", "a = [1]"] {
+            assert_eq!(told(wrong, |r| assert_eq!(r.number("a", Range::Positive), None)).len(), 1);
+        }
+        for wrong in ["a = [1, 2]", "a = [1, 2, inf]", "a = [1, 2, true]", "a = 1"] {
+            assert_eq!(told(wrong, |r| assert_eq!(r.vector("a"), None)).len(), 1);
+        }
+    }
+
+    #[test]
+    fn of_keys_that_exclude_each_other_none_is_unknown() {
+        let read = |r: &Reader| assert_eq!(r.only_one(&["a", "b"]), Some("a"));
+        let problems = told("a = 1\nb = 2", read);
+        assert_eq!(problems.len(), 1);
+        assert!(problems[0].contains("cannot stand beside `a`"), "{problems:?}");
+    }
+
+    #[test]
+    fn what_is_no_table_is_told_once() {
+        let problems = told("t = 3", |r| {
+            let inner = r.table("t").unwrap();
+            inner.problem("x", "is missing");
+            inner.finish();
+        });
+        assert_eq!(problems.len(), 1);
+        assert!(problems[0].contains("must be a table, but is an integer"), "{problems:?}");
+    }
+
+    #[test]
+    fn the_nearest_word() {
+        let known = ["gravity", "duration", "dt"];
+        assert_eq!(nearest("gravty", &known), Some("gravity"));
+        assert_eq!(nearest("zzz", &known), None);
+        assert_eq!(nearest("", &known), None);
+        assert_eq!(nearest("x", &[]), None);
+        assert_eq!([plain(0.0), plain(-1.0), plain(1e-300)], ["0", "-1", "1e-300"]);
+    }
+}

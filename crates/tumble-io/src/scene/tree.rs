@@ -194,3 +194,66 @@ fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result
         other => Err(format!("`{part}` cannot be set inside {}", other.kind())),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tree(text: &str) -> Node {
+        let (root, problems) = parse(text, 0);
+        assert!(problems.is_empty(), "{problems:?}");
+        root
+    }
+
+    /// The tree as text, without places.
+    fn told(node: &Node) -> String {
+        match &node.value {
+            Value::Table(entries) => {
+                let each = entries.iter().map(|e| format!("{}={}", e.key, told(&e.node)));
+                format!("{{{}}}", each.collect::<Vec<_>>().join(","))
+            }
+            Value::Array(items) => {
+                format!("[{}]", items.iter().map(told).collect::<Vec<_>>().join(","))
+            }
+            other => format!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn keys_and_values_know_their_place() {
+        let root = tree("a = 1\n[b]\nc = [true, \"x\"]\n");
+        let Value::Table(top) = &root.value else { panic!("no table") };
+        assert_eq!((top[0].place.span.clone(), top[0].node.place.span.clone()), (0..1, 4..5));
+        let Value::Table(b) = &top[1].node.value else { panic!("no table") };
+        let Value::Array(c) = &b[0].node.value else { panic!("no array") };
+        assert_eq!(c[1].place.span, 21..24);
+    }
+
+    #[test]
+    fn numbers_of_all_kinds() {
+        let text = "a = 1_000\nb = 0x10\nc = 1e3\nd = -inf\ne = 99999999999999999999\nf = 0xFFFFFFFFFFFFFFFFFF";
+        assert_eq!(
+            told(&tree(text)),
+            "{a=Integer(1000),b=Integer(16),c=Number(1000.0),d=Number(-inf),\
+             e=Number(1e20),f=Number(4.722366482869645e21)}"
+        );
+    }
+
+    #[test]
+    fn set_reaches_tables_bodies_and_what_is_not_there_yet() {
+        let mut root = tree("dt = 1\n[[body]]\nscale = 1\n[[body]]\n");
+        for assignment in ["dt=2", "body.scale=3", "body.0.scale = 4", "box.min=[0]", "w=a b", "e="]
+        {
+            set(&mut root, assignment, 1).unwrap();
+        }
+        assert_eq!(
+            told(&root),
+            "{dt=Integer(2),body=[{scale=Integer(4)},{scale=Integer(3)}],\
+             box={min=[Integer(0)]},w=String(\"a b\"),e=String(\"\")}"
+        );
+        let deep = vec!["a"; MOST_PARTS + 1].join(".") + "=1";
+        for wrong in ["dt", "=1", "a..b=1", "dt.x=1", "body.2.scale=1", deep.as_str()] {
+            assert!(set(&mut root, wrong, 1).is_err(), "{wrong}");
+        }
+    }
+}
