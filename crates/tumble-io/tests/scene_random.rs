@@ -116,10 +116,44 @@ fn lines() -> impl Strategy<Value = String> {
     })
 }
 
-/// The lists of built-in scenes that load quickly.
 fn builtin() -> impl Strategy<Value = String> {
-    let quick = BUILTIN.map(|scene| scene.text).to_vec();
-    select(quick).prop_map(str::to_owned)
+    select(BUILTIN.map(|scene| scene.text).to_vec()).prop_map(str::to_owned)
+}
+
+const NUMBERS: [&str; 14] = [
+    "0",
+    "-0.0",
+    "-1",
+    "5e-324",
+    "1e-300",
+    "1e-9",
+    "0.5",
+    "3",
+    "1e9",
+    "1e150",
+    "-1e150",
+    "1e300",
+    "1.7976931348623157e308",
+    "9223372036854775807",
+];
+
+/// A built-in scene with other numbers, which keeps its form.
+fn renumbered() -> impl Strategy<Value = String> {
+    let changes = vec((any::<Index>(), select(&NUMBERS[..])), 1..4);
+    (builtin(), changes).prop_map(|(text, changes)| {
+        let mut words: Vec<String> =
+            text.split_inclusive([' ', '\n', '[', ',']).map(str::to_owned).collect();
+        let trim = |word: &str| {
+            word.trim_matches(|c: char| !c.is_ascii_alphanumeric() && c != '-').to_owned()
+        };
+        let numbers: Vec<usize> =
+            (0..words.len()).filter(|&i| trim(&words[i]).parse::<f64>().is_ok()).collect();
+        for (at, new) in changes {
+            let word = &mut words[*at.get(&numbers)];
+            *word = word.replacen(&trim(word), new, 1);
+        }
+        words.concat()
+    })
 }
 
 /// A built-in scene with some of its words exchanged, doubled or left out.
@@ -176,6 +210,21 @@ proptest! {
     #[test]
     fn scenes_with_other_words(text in mutated()) {
         judge(load(&text, &[]))?;
+    }
+
+    #[test]
+    fn scenes_with_other_numbers(text in renumbered()) {
+        let loaded = load(&text, &[]);
+        if let Ok(Loaded { mut world, .. }) = load(&text, &[]) {
+            // it may diverge, and then says so
+            for _ in 0..3 {
+                if let Err(error) = world.step() {
+                    prop_assert!(error.to_string().contains("diverged"));
+                    break;
+                }
+            }
+        }
+        judge(loaded)?;
     }
 
     #[test]

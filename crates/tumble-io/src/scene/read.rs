@@ -116,6 +116,12 @@ fn walls_of_box(reader: Reader) -> Option<BoxScene> {
     Some(BoxScene { walls, material })
 }
 
+/// Whether this is the squared length of something normalised, to rounding. What a run wrote then
+/// reads back as it was.
+fn is_unit(length_squared: f64) -> bool {
+    (length_squared - 1.0).abs() < 4.0 * f64::EPSILON
+}
+
 /// `orientation = [w, x, y, z]`; of any length but zero.
 pub fn orientation(reader: &Reader) -> DQuat {
     let Some([w, x, y, z]) = reader.numbers::<4>("orientation", Range::Finite) else {
@@ -128,11 +134,7 @@ pub fn orientation(reader: &Reader) -> DQuat {
     }
     let q = DQuat::from_xyzw(x, y, z, w);
     // one that is normalised already keeps its bits
-    if (q.length_squared() - 1.0).abs() < 4.0 * f64::EPSILON {
-        q
-    } else {
-        (q / largest).normalize()
-    }
+    if is_unit(q.length_squared()) { q } else { (q / largest).normalize() }
 }
 
 fn wall(reader: Reader) -> Option<WallScene> {
@@ -142,7 +144,12 @@ fn wall(reader: Reader) -> Option<WallScene> {
     }
     let offset = reader.number("offset", Range::Finite).unwrap_or(0.0);
     let plane = normal.and_then(|normal| {
-        let plane = WallPlane::new(normal, offset);
+        // one that is normalised already keeps its bits
+        let plane = if is_unit(normal.length_squared()) {
+            Some(WallPlane { normal, offset })
+        } else {
+            WallPlane::new(normal, offset)
+        };
         if plane.is_none() {
             reader.problem("normal", "must not be zero: it is the direction out of the wall");
         }
