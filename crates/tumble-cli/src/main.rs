@@ -53,11 +53,11 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Run(message)) => {
-            eprintln!("{message}");
+            complain(&message);
             ExitCode::from(1)
         }
         Err(Failure::Call(message)) => {
-            eprintln!("{message}");
+            complain(&message);
             ExitCode::from(2)
         }
         Err(Failure::Interrupted) => ExitCode::from(130),
@@ -67,6 +67,12 @@ fn main() -> ExitCode {
 /// Whether messages on stderr may have colours.
 fn colour() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
+}
+
+/// Prints to stderr; where even that fails, the exit status has to do.
+fn complain(message: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr().lock(), "{message}");
 }
 
 /// Prints to stdout; a reader that went away (`tumble scenes | head -1`) is no failure.

@@ -7,12 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
 use tumble_io::run::{Finished, Progress, RunError, RunFolder};
 use tumble_io::scene::{Loaded, load_builtin, load_file};
 
 use crate::scenes::unknown_scene;
 use crate::table::{count, short, table};
-use crate::{Failure, colour, print};
+use crate::{Failure, colour, complain, print};
 
 #[derive(Args)]
 pub struct RunArgs {
@@ -26,7 +28,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Simulated seconds, instead of the scene's
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration: Option<String>,
     /// Write over the results of another run in --out
     #[arg(long)]
@@ -77,22 +79,22 @@ fn load(args: &RunArgs) -> Result<Loaded, Failure> {
 fn failure(error: &RunError) -> Failure {
     let message = format!("error: {error}");
     match error {
-        RunError::Taken(_) => Failure::Call(message),
+        RunError::Taken(_) | RunError::NotARun(_) => Failure::Call(message),
         _ => Failure::Run(message),
     }
 }
 
 /// A flag that the first Ctrl-C (or a request to terminate) raises; a second one ends at once.
+/// A hang-up is left alone, so that `nohup` and closed terminals do what they always do.
 fn stop_on_ctrl_c() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
-    let raised = Arc::clone(&stop);
-    let set = ctrlc::set_handler(move || {
-        if raised.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
+    let set = [SIGINT, SIGTERM].into_iter().try_for_each(|signal| {
+        // in this order: the flag of the first signal is what the second one finds
+        flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
+        flag::register(signal, Arc::clone(&stop)).map(|_| ())
     });
     if set.is_err() {
-        eprintln!("warning: Ctrl-C will stop the run without writing its last results");
+        complain("warning: Ctrl-C will stop the run without writing its last results");
     }
     stop
 }

@@ -6,9 +6,14 @@ use std::path::{Path, PathBuf};
 
 use tumble::StepError;
 
+use crate::scene::{HEADER, Scene};
+
 /// The files that a run writes. Nothing else in the folder is ever touched.
 const FILES: [&str; 6] =
-    ["scene.toml", "trajectory.csv", "energy.csv", "summary.json", "energy.svg", "motion.png"];
+    [SCENE, "trajectory.csv", "energy.csv", "summary.json", "energy.svg", "motion.png"];
+
+/// The file that shows a folder to be taken.
+const SCENE: &str = "scene.toml";
 
 /// Why a run cannot start or go on.
 #[derive(Debug)]
@@ -19,6 +24,10 @@ pub enum RunError {
     Folder(PathBuf, io::Error),
     /// A file cannot be written.
     Write(PathBuf, io::Error),
+    /// The folder holds a scene that no run wrote.
+    NotARun(PathBuf),
+    /// The energy is not a finite number at this time (s).
+    Energy(f64),
     /// A picture cannot be drawn.
     Draw(PathBuf, String),
     /// The simulation failed.
@@ -49,6 +58,16 @@ impl std::fmt::Display for RunError {
                 write!(f, "cannot write {}: {error}; {advice}", path.display())
             }
             Self::Draw(path, error) => write!(f, "cannot draw {}: {error}", path.display()),
+            Self::NotARun(path) => write!(
+                f,
+                "{} was not written by a run, so --force keeps it; name another folder with --out",
+                path.display()
+            ),
+            Self::Energy(time) => write!(
+                f,
+                "the energy is not a finite number at t = {time} s: the motion has diverged; \
+                 a smaller dt or softer contacts may help"
+            ),
             Self::Step(error) => error.fmt(f),
         }
     }
@@ -64,35 +83,68 @@ pub struct RunFolder {
 
 impl RunFolder {
     /// Makes the folder at `path`, or takes it over when it holds no run. With `force` an old
-    /// run's files are removed first.
+    /// run's files are removed first. The folder is then taken for whoever asks next, even at the
+    /// same moment from another process: an empty `scene.toml` says so until the run writes its own.
     ///
     /// # Errors
-    /// [`RunError::Taken`] or [`RunError::Folder`].
+    /// [`RunError::Taken`], [`RunError::NotARun`], [`RunError::Folder`] or [`RunError::Write`].
     pub fn create(path: &Path, force: bool) -> Result<Self, RunError> {
         let folder = Self { path: path.to_owned() };
         fs::create_dir_all(path).map_err(|error| RunError::Folder(path.to_owned(), error))?;
         for name in FILES {
-            let file = folder.file(name);
-            if !file.exists() {
-                continue;
+            // a link that leads nowhere is there, too
+            if folder.file(name).symlink_metadata().is_ok() {
+                if !force {
+                    return Err(RunError::Taken(path.to_owned()));
+                }
+                folder.remove(name)?;
             }
-            if !force {
-                return Err(RunError::Taken(path.to_owned()));
-            }
-            fs::remove_file(&file).map_err(|error| RunError::Write(file, error))?;
         }
-        Ok(folder)
+        let scene = folder.file(SCENE);
+        match File::create_new(&scene) {
+            Ok(_) => Ok(folder),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                Err(RunError::Taken(path.to_owned()))
+            }
+            Err(error) => Err(RunError::Write(scene, error)),
+        }
+    }
+
+    /// Removes a file of an old run; but a `scene.toml` only if a run wrote it.
+    fn remove(&self, name: &str) -> Result<(), RunError> {
+        let path = self.file(name);
+        if name == SCENE {
+            let text = fs::read(&path).unwrap_or_default();
+            if !(text.is_empty() || text.starts_with(HEADER.as_bytes())) {
+                return Err(RunError::NotARun(path));
+            }
+        }
+        fs::remove_file(&path).map_err(|error| RunError::Write(path, error))
+    }
+
+    /// Writes the scene; where that fails, the folder is free again.
+    pub(super) fn claim(&self, scene: &Scene) -> Result<(), RunError> {
+        self.write(SCENE, scene.to_toml().as_bytes()).inspect_err(|_| {
+            // best effort: the first error is the one to tell
+            let _ = fs::remove_file(self.file(SCENE));
+        })
     }
 
     /// Makes the first of `parent/name`, `parent/name-2`, `parent/name-3`, … that holds no run.
     ///
     /// # Errors
-    /// [`RunError::Folder`].
+    /// [`RunError::Folder`] or [`RunError::Write`].
     pub fn create_next(parent: &Path, name: &str) -> Result<Self, RunError> {
         let mut number = 1u32;
         loop {
             let name = if number == 1 { name.to_owned() } else { format!("{name}-{number}") };
-            match Self::create(&parent.join(name), false) {
+            let path = parent.join(name);
+            // a file in the way takes the name as a run does
+            if path.exists() && !path.is_dir() {
+                number += 1;
+                continue;
+            }
+            match Self::create(&path, false) {
                 Err(RunError::Taken(_)) => number += 1,
                 result => return result,
             }

@@ -48,19 +48,14 @@ pub fn run(
     watch: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<Finished, RunError> {
     let Loaded { scene, mut world } = loaded;
-    folder.write("scene.toml", scene.to_toml().as_bytes())?;
+    folder.claim(&scene)?;
     let mut recording = Recording::start(folder, &world)?;
     let steps = scene.step_count();
     let mut clock = Duration::ZERO;
-    let mut frame = 0;
     let mut going = true;
     recording.frame(&world)?;
     while going && world.state().step < steps {
-        // several frames that fall on one step are one frame
-        while scene.frame_step(frame) <= world.state().step {
-            frame += 1;
-        }
-        let next = scene.frame_step(frame);
+        let next = scene.next_frame(world.state().step);
         going = advance(&mut world, next.min(steps), steps, &mut clock, watch)?;
         if world.state().step == next {
             recording.frame(&world)?;
@@ -128,7 +123,7 @@ impl<'a> Recording<'a> {
     }
 
     fn frame(&mut self, world: &World) -> Result<(), RunError> {
-        let row = ledger_row(world.time(), &world.energy(), self.start);
+        let row = self.row(world)?;
         write_frame(&mut self.trajectory, world)
             .map_err(|e| failed(self.folder, "trajectory.csv", e))?;
         writeln!(self.ledger, "{}", line(&row))
@@ -137,11 +132,18 @@ impl<'a> Recording<'a> {
         Ok(())
     }
 
+    /// The ledger now; one that cannot be drawn up is the end of the run.
+    fn row(&self, world: &World) -> Result<EnergyRow, RunError> {
+        let row = ledger_row(world.time(), &world.energy(), self.start);
+        let finite = row.total.is_finite() && row.residual.is_finite();
+        if finite { Ok(row) } else { Err(RunError::Energy(world.time())) }
+    }
+
     /// Closes the files and draws the pictures; returns the ledger of the last state.
     fn finish(mut self, scene: &Scene, world: &World) -> Result<EnergyRow, RunError> {
         self.trajectory.flush().map_err(|e| failed(self.folder, "trajectory.csv", e))?;
         self.ledger.flush().map_err(|e| failed(self.folder, "energy.csv", e))?;
-        let row = ledger_row(world.time(), &world.energy(), self.start);
+        let row = self.row(world)?;
         self.recorder.record(world, row.clone());
         let (frames, rows) = self.recorder.finish();
         let svg = energy_svg(&format!("{}: energy", scene.name), &rows)

@@ -5,24 +5,35 @@ use std::path::PathBuf;
 use tumble::{DVec3, MassModel, Sampling};
 
 use super::description::{BodyScene, Copies, Geometry, MassScene};
-use super::geometry::{MASS_MODELS, shape_scene};
+use super::geometry::{MASS_MODELS, SHAPE_KEYS, shape_scene};
 use super::read::{material, orientation};
 use super::reader::{Range, Reader};
 
-/// More bodies than this are a slip of the keyboard.
-const MOST_COPIES: u64 = 1_000_000;
+/// The keys that say how heavy a body is; only one may be given.
+pub const MASS_KEYS: [&str; 3] = ["particle_mass", "mass", "density"];
 
-/// Reads body number `index`; `None` where it cannot be made sense of.
-pub fn body(reader: Reader, index: usize) -> Option<BodyScene> {
+/// More characters than this are no name.
+const LONGEST_NAME: usize = 200;
+
+/// More bodies than this are a slip of the keyboard.
+pub const MOST_COPIES: u64 = 1_000_000;
+
+/// Reads body number `index`; defaults take the place of what cannot be made sense of.
+pub fn body(reader: Reader, index: usize) -> BodyScene {
     let geometry = geometry(&reader);
     let name = match reader.string("name") {
         Some("") => {
             reader.problem("name", "must not be empty");
             String::new()
         }
-        Some(name) if name.contains([',', '"', '\n', '\r']) => {
-            reader.problem("name", "must not contain commas, quotes or line breaks");
+        // names are a column of trajectory.csv
+        Some(name) if name.contains(|c: char| c == ',' || c == '"' || c.is_control()) => {
+            reader.problem("name", "must not contain commas, quotes, line breaks or the like");
             name.to_owned()
+        }
+        Some(name) if name.chars().nth(LONGEST_NAME).is_some() => {
+            reader.problem("name", format!("must have at most {LONGEST_NAME} characters"));
+            String::new()
         }
         Some(name) => name.to_owned(),
         None => format!("body {index}"),
@@ -42,7 +53,7 @@ pub fn body(reader: Reader, index: usize) -> Option<BodyScene> {
         geometry: geometry.unwrap_or(Geometry::Particles(vec![DVec3::ZERO])),
     };
     reader.finish();
-    Some(body)
+    body
 }
 
 fn geometry(reader: &Reader) -> Option<Geometry> {
@@ -53,9 +64,18 @@ fn geometry(reader: &Reader) -> Option<Geometry> {
             let path = PathBuf::from(reader.string("mesh")?);
             Some(Geometry::Mesh { path, sha256, weld })
         }
-        Some("shape") => shape_scene(reader).map(Geometry::Shape),
+        Some("shape") => {
+            let shape = shape_scene(reader).map(Geometry::Shape);
+            // of an unknown shape, nobody knows the keys
+            if shape.is_none() {
+                reader.know(&SHAPE_KEYS);
+            }
+            shape
+        }
         Some(_) => reader.points("particles").map(Geometry::Particles),
         None => {
+            reader.know(&SHAPE_KEYS);
+            reader.know(&["weld", "mesh_sha256"]);
             reader.problem("", "needs one of `mesh = \"FILE\"`, `shape = \"NAME\"` or `particles = [[x, y, z], …]`");
             None
         }
@@ -89,7 +109,7 @@ fn mass_model(reader: &Reader) -> MassModel {
 }
 
 fn mass(reader: &Reader) -> MassScene {
-    reader.only_one(&["particle_mass", "mass", "density"]);
+    reader.only_one(&MASS_KEYS);
     let particle = reader.number("particle_mass", Range::Positive).map(MassScene::Particle);
     let total = reader.number("mass", Range::Positive).map(MassScene::Total);
     let density = reader.number("density", Range::Positive).map(MassScene::Density);

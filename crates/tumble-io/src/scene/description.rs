@@ -143,6 +143,20 @@ impl Scene {
         (self.duration / self.dt).round() as u64
     }
 
+    /// The first step after `step` that has a frame.
+    pub fn next_frame(&self, step: u64) -> u64 {
+        let steps_a_frame = self.output.interval / self.dt;
+        // frames closer to each other than steps: one on every step
+        if steps_a_frame <= 1.0 {
+            return step + 1;
+        }
+        let mut frame = ((step as f64 / steps_a_frame) as u64).saturating_sub(1);
+        while self.frame_step(frame) <= step {
+            frame += 1;
+        }
+        self.frame_step(frame)
+    }
+
     /// The step of frame number `frame`: the one nearest to its time.
     pub fn frame_step(&self, frame: u64) -> u64 {
         (frame as f64 * self.output.interval / self.dt).round() as u64

@@ -13,6 +13,21 @@ use crate::mesh::{Format, parse_mesh, read_mesh};
 pub const MASS_MODELS: [(&str, MassModel); 3] =
     [("particles", MassModel::Particles), ("shell", MassModel::Shell), ("solid", MassModel::Solid)];
 
+/// The keys that one or another built-in shape has.
+pub const SHAPE_KEYS: [&str; 11] = [
+    "radius",
+    "subdivisions",
+    "size",
+    "divisions",
+    "height",
+    "segments",
+    "tube_radius",
+    "length",
+    "bar_radius",
+    "width",
+    "thickness",
+];
+
 const CAT: &[u8] = include_bytes!("../../../../assets/cat.obj");
 
 /// A built-in shape with its keys.
@@ -127,7 +142,8 @@ pub fn make(body: &mut BodyScene, folder: &Path) -> Result<Made, GeometryError> 
     Ok(Made { shape: Arc::new(shape), mass })
 }
 
-fn points_of(geometry: &mut Geometry, folder: &Path) -> Result<Mesh, GeometryError> {
+/// The points that a body is made of, before `scale`. Of a mesh, path and hash are filled in.
+pub fn points_of(geometry: &mut Geometry, folder: &Path) -> Result<Mesh, GeometryError> {
     match geometry {
         Geometry::Particles(points) => Ok(Mesh { vertices: points.clone(), triangles: Vec::new() }),
         Geometry::Shape(ShapeScene::Primitive(primitive)) => {

@@ -1,13 +1,14 @@
 //! From a file, or a built-in scene, to a world that is ready to run.
 
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use tumble::{Body, BuildError, DQuat, DVec3, World};
+use tumble::{Body, BodyView, BuildError, DQuat, DVec3, World, WorldBuilder};
 
+use super::body::MASS_KEYS;
 use super::builtin::builtin;
-use super::description::{BodyScene, Scene};
+use super::description::{BodyScene, Geometry, Scene};
 use super::geometry::{self, Made};
 use super::problem::{Problem, SceneError, Source};
 use super::tree::{self, Node, Place};
@@ -68,10 +69,15 @@ fn read_text(path: &Path) -> Result<String, String> {
     }
     let bytes =
         std::fs::read(path).map_err(|error| format!("cannot read the scene {shown}: {error}"))?;
-    String::from_utf8(bytes).map_err(|error| {
+    let mut text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         format!("{shown} is no scene: a scene is TOML text in UTF-8, and byte {at} is not")
-    })
+    })?;
+    // the byte order mark of some editors would count as a column
+    if text.starts_with('\u{feff}') {
+        text.remove(0);
+    }
+    Ok(text)
 }
 
 /// Reads a scene from text. `folder` is where relative mesh paths start.
@@ -99,12 +105,8 @@ pub fn load_text(
             problems.borrow_mut().push(problem);
         }
     }
-    let mut scene = read::scene(&root, name.to_owned(), &problems);
-    let world = if problems.borrow().is_empty() {
-        world(&mut scene, &root, folder, &problems)
-    } else {
-        None
-    };
+    let (mut scene, sound) = read::scene(&root, name.to_owned(), &problems);
+    let world = world(&mut scene, &sound, &root, folder, &problems);
     let problems = problems.into_inner();
     match world {
         Some(world) if problems.is_empty() => Ok(Loaded { scene, world }),
@@ -112,15 +114,23 @@ pub fn load_text(
     }
 }
 
-/// Builds the world; `None` with at least one problem added.
+/// Builds the world; `None` with at least one problem reported, now or before. Meshes are read in
+/// either case, so that what is wrong with them is told along with everything else.
 fn world(
     scene: &mut Scene,
+    sound: &[bool],
     root: &Node,
     folder: &Path,
     problems: &RefCell<Vec<Problem>>,
 ) -> Option<World> {
-    let top = Reader::new(root, String::new(), problems);
+    // what is wrong with these tables was told when the scene was read
+    let told = RefCell::default();
+    let top = Reader::new(root, String::new(), &told);
     let readers = top.tables("body");
+    let blame = |index: Option<usize>, key: &str, message: String| {
+        let reader = index.and_then(|index| readers.get(index)).unwrap_or(&top);
+        problems.borrow_mut().push(Problem::new(reader.place_of(key), reader.key(key), message));
+    };
     let mut builder = World::builder()
         .gravity(scene.gravity)
         .velocity_damping_stiffness(scene.velocity_damping_stiffness)
@@ -131,42 +141,75 @@ fn world(
         builder = builder.wall_of(wall, material);
     }
     // bodies that look alike share one shape
-    let mut made: BTreeMap<String, Made> = BTreeMap::new();
-    let mut owners = Vec::new();
+    let mut made: BTreeMap<String, (Made, Geometry)> = BTreeMap::new();
     for (index, body) in scene.bodies.iter_mut().enumerate() {
-        let look = look(body);
-        let shape = match made.get(&look) {
-            Some(shape) => Ok(shape.clone()),
-            None => geometry::make(body, folder),
-        };
-        match shape {
-            Ok(shape) => {
-                for body in bodies(body, &shape) {
-                    builder = builder.body(body);
-                    owners.push(index);
-                }
-                made.insert(look, shape);
+        // of a body that is not to be built, only the file can be judged
+        if !sound[index] {
+            if matches!(body.geometry, Geometry::Mesh { .. })
+                && let Err(error) = geometry::points_of(&mut body.geometry, folder)
+            {
+                blame(Some(index), error.key, error.message);
             }
-            Err(error) => readers[index].problem(error.key, error.message),
+            continue;
+        }
+        let look = look(body);
+        match made.get(&look) {
+            // path and hash of the mesh are known by now
+            Some((_, geometry)) => body.geometry = geometry.clone(),
+            None => match geometry::make(body, folder) {
+                Ok(shape) => {
+                    made.insert(look.clone(), (shape, body.geometry.clone()));
+                }
+                Err(error) => blame(Some(index), error.key, error.message),
+            },
+        }
+        // with anything wrong, no world is built
+        if let Some((shape, _)) = made.get(&look)
+            && problems.borrow().is_empty()
+        {
+            builder = bodies(body, shape).into_iter().fold(builder, WorldBuilder::body);
         }
     }
     if !problems.borrow().is_empty() {
         return None;
     }
-    match builder.build() {
-        Ok(world) => Some(world),
-        Err(errors) => {
-            let names = scene.body_names();
-            let owner = |name: &str| {
-                let at = names.iter().position(|n| n == name)?;
-                owners.get(at).copied()
-            };
-            for error in errors.0 {
-                report(&error, &top, &readers, owner);
+    let owners = owners(scene);
+    let world = builder.build().map_err(|errors| {
+        let mut blamed = BTreeSet::new();
+        for error in errors.0 {
+            let (index, key) = guilty(&error, &owners, &readers);
+            // one of the copies of a body speaks for all of them
+            if blamed.insert((index, key)) {
+                blame(index, key, format!("cannot work: {error}"));
             }
-            None
         }
+    });
+    let world = world.ok()?;
+    let overflowing = world.bodies().find(|body| !has_finite_energy(&world, body));
+    if let Some(name) = overflowing.map(|body| body.name()) {
+        let message = "has an energy that is not a finite number at the start: \
+                       its mass, place or velocity is too large";
+        blame(owners.get(name).copied(), "", message.to_owned());
+        return None;
     }
+    Some(world)
+}
+
+fn has_finite_energy(world: &World, body: &BodyView) -> bool {
+    let mass = body.model().mass;
+    let flight = 0.5 * mass * body.velocity().length_squared();
+    let spin = 0.5 * body.angular_velocity().dot(body.angular_momentum());
+    let height = mass * world.model().gravity.dot(body.position());
+    (flight + spin + height).is_finite()
+}
+
+/// Which `[[body]]` of the scene each body of the world comes from, by its name.
+fn owners(scene: &Scene) -> BTreeMap<String, usize> {
+    let names = |(index, body): (usize, &BodyScene)| {
+        body.names().into_iter().map(move |name| (name, index))
+    };
+    // of bodies that share a name, the last is to be renamed
+    scene.bodies.iter().enumerate().flat_map(names).collect()
 }
 
 /// Two bodies with the same look have the same shape and mass.
@@ -196,21 +239,25 @@ fn bodies(scene: &BodyScene, made: &Made) -> Vec<Body> {
         .collect()
 }
 
-/// Points a problem that only the finished world shows at the key it comes from.
-fn report(
+/// The body and key that a problem which only the finished world shows comes from.
+fn guilty(
     error: &BuildError,
-    top: &Reader,
+    owners: &BTreeMap<String, usize>,
     readers: &[Reader],
-    owner: impl Fn(&str) -> Option<usize>,
-) {
+) -> (Option<usize>, &'static str) {
     let (body, key) = match error {
         BuildError::World { quantity, .. } => (None, *quantity),
         BuildError::Body { body, quantity, .. } => (Some(body), *quantity),
         BuildError::Outside { body, .. } => (Some(body), "position"),
         BuildError::SameName { body } => (Some(body), "name"),
     };
-    match body.and_then(|name| owner(name)).and_then(|index| readers.get(index)) {
-        Some(reader) => reader.problem(key, format!("cannot work: {error}")),
-        None => top.problem(key, format!("cannot work: {error}")),
-    }
+    let index = body.and_then(|name| owners.get(name).copied());
+    // a mass may be given in three ways
+    let key = match index.and_then(|index| readers.get(index)) {
+        Some(reader) if key == "mass" => {
+            MASS_KEYS.into_iter().find(|key| reader.has(key)).unwrap_or(key)
+        }
+        _ => key,
+    };
+    (index, key)
 }

@@ -20,5 +20,6 @@ pub use description::{
     BodyScene, BoxScene, Copies, Geometry, MassScene, OutputScene, Scene, WallScene,
 };
 pub use load::{Loaded, load_builtin, load_file, load_text};
-pub use problem::SceneError;
+pub use problem::{SceneError, Source};
 pub use reader::nearest;
+pub(crate) use write::HEADER;

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 
 use tumble::{DQuat, DVec3, Integrator, Material, MaterialOverride, WallBox, WallPlane};
 
-use super::body;
-use super::description::{BoxScene, OutputScene, Scene, WallScene};
+use super::body::{self, MOST_COPIES};
+use super::description::{BodyScene, BoxScene, Copies, OutputScene, Scene, WallScene};
 use super::problem::Problem;
 use super::reader::{Range, Reader};
 use super::tree::Node;
@@ -14,13 +14,18 @@ use super::tree::Node;
 const MOST_STEPS: f64 = 9e15;
 
 /// Reads a whole scene; what is wrong goes to `problems`, and a default takes its place.
-pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> Scene {
+/// The second value says of each body whether nothing was wrong with it.
+pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Scene, Vec<bool>) {
     let top = Reader::new(root, String::new(), problems);
     let duration = top.number("duration", Range::NotNegative).unwrap_or(3.0);
     let dt = top.number("dt", Range::Positive).unwrap_or(1e-3);
     if duration / dt > MOST_STEPS {
         let key = if top.has("dt") { "dt" } else { "duration" };
         top.problem(key, format!("leads to {:e} steps, more than can be counted", duration / dt));
+    } else if duration > 0.0 && (duration / dt).round() == 0.0 {
+        let key = if top.has("duration") { "duration" } else { "dt" };
+        let message = format!("leads to no step at all: a step takes {dt} s, the run {duration} s");
+        top.problem(key, message);
     }
     let collision = match top.table("collision") {
         None => Material::default(),
@@ -32,11 +37,7 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> Sce
     };
     let walls_of_box = top.table("box").and_then(walls_of_box);
     let walls = top.tables("wall").into_iter().filter_map(wall).collect();
-    let bodies: Vec<_> = top.tables("body");
-    if bodies.is_empty() && !top.has("body") {
-        let problem = Problem::new(top.place().clone(), "", "the scene has no body");
-        top.report(problem.help("add one, for example:\n[[body]]\nshape = \"sphere\""));
-    }
+    let (bodies, sound) = bodies(&top, problems);
     let scene = Scene {
         name,
         description: top.string("description").map(str::to_owned),
@@ -50,11 +51,32 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> Sce
         collision,
         walls_of_box,
         walls,
-        bodies: bodies.into_iter().enumerate().filter_map(|(i, b)| body::body(b, i)).collect(),
+        bodies,
         output: top.table("output").map_or_else(OutputScene::default, output),
     };
     top.finish();
-    scene
+    (scene, sound)
+}
+
+/// All bodies, and whether nothing was wrong with them.
+fn bodies(top: &Reader, problems: &RefCell<Vec<Problem>>) -> (Vec<BodyScene>, Vec<bool>) {
+    let before = problems.borrow().len();
+    let tables = top.tables("body");
+    if tables.is_empty() && problems.borrow().len() == before {
+        let problem = Problem::new(top.place_of("body"), "", "the scene has no body");
+        top.report(problem.help("add one, for example:\n[[body]]\nshape = \"sphere\""));
+    }
+    let read = |(index, table)| {
+        let before = problems.borrow().len();
+        let body = body::body(table, index);
+        (body, problems.borrow().len() == before)
+    };
+    let (bodies, sound): (Vec<BodyScene>, _) = tables.into_iter().enumerate().map(read).unzip();
+    let total: u64 = bodies.iter().map(|b| b.copies.as_ref().map_or(1, Copies::total)).sum();
+    if total > MOST_COPIES {
+        top.problem("body", format!("leads to {total} bodies; at most {MOST_COPIES} can be run"));
+    }
+    (bodies, sound)
 }
 
 fn integrator(top: &Reader) -> Integrator {
@@ -94,6 +116,12 @@ fn walls_of_box(reader: Reader) -> Option<BoxScene> {
     Some(BoxScene { walls, material })
 }
 
+/// Whether this is the squared length of something normalised, to rounding. What a run wrote then
+/// reads back as it was.
+fn is_unit(length_squared: f64) -> bool {
+    (length_squared - 1.0).abs() < 4.0 * f64::EPSILON
+}
+
 /// `orientation = [w, x, y, z]`; of any length but zero.
 pub fn orientation(reader: &Reader) -> DQuat {
     let Some([w, x, y, z]) = reader.numbers::<4>("orientation", Range::Finite) else {
@@ -106,11 +134,7 @@ pub fn orientation(reader: &Reader) -> DQuat {
     }
     let q = DQuat::from_xyzw(x, y, z, w);
     // one that is normalised already keeps its bits
-    if (q.length_squared() - 1.0).abs() < 4.0 * f64::EPSILON {
-        q
-    } else {
-        (q / largest).normalize()
-    }
+    if is_unit(q.length_squared()) { q } else { (q / largest).normalize() }
 }
 
 fn wall(reader: Reader) -> Option<WallScene> {
@@ -120,7 +144,12 @@ fn wall(reader: Reader) -> Option<WallScene> {
     }
     let offset = reader.number("offset", Range::Finite).unwrap_or(0.0);
     let plane = normal.and_then(|normal| {
-        let plane = WallPlane::new(normal, offset);
+        // one that is normalised already keeps its bits
+        let plane = if is_unit(normal.length_squared()) {
+            Some(WallPlane { normal, offset })
+        } else {
+            WallPlane::new(normal, offset)
+        };
         if plane.is_none() {
             reader.problem("normal", "must not be zero: it is the direction out of the wall");
         }

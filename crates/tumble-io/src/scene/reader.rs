@@ -39,6 +39,8 @@ impl Range {
 
 /// A table while it is read. Keys that nobody asked for are reported by [`Reader::finish`].
 pub struct Reader<'a> {
+    /// Whether this is a table at all; of anything else, nothing more needs to be said.
+    is_table: bool,
     entries: &'a [Entry],
     place: Place,
     path: String,
@@ -57,22 +59,25 @@ impl<'a> Reader<'a> {
                 &[]
             }
         };
-        Self { entries, place: node.place.clone(), path, asked: RefCell::default(), problems }
-    }
-
-    /// Where the table itself stands.
-    pub fn place(&self) -> &Place {
-        &self.place
+        let is_table = matches!(node.value, Value::Table(_));
+        let (place, asked) = (node.place.clone(), RefCell::default());
+        Self { is_table, entries, place, path, asked, problems }
     }
 
     /// The dotted name of one of its keys.
     pub fn key(&self, key: &str) -> String {
-        if self.path.is_empty() { key.to_owned() } else { format!("{}.{key}", self.path) }
+        match (self.path.as_str(), key) {
+            ("", key) => key.to_owned(),
+            (path, "") => path.to_owned(),
+            (path, key) => format!("{path}.{key}"),
+        }
     }
 
     /// Reports a problem with one of its keys, or with the table where the key is not given.
     pub fn problem(&self, key: &str, message: impl Into<String>) {
-        self.report(Problem::new(self.place_of(key), self.key(key), message));
+        if self.is_table {
+            self.report(Problem::new(self.place_of(key), self.key(key), message));
+        }
     }
 
     /// Reports a problem.
@@ -91,6 +96,11 @@ impl<'a> Reader<'a> {
         self.entries.iter().any(|entry| entry.key == key)
     }
 
+    /// Takes keys as known, for a table in which something else keeps them from being read.
+    pub fn know(&self, keys: &[&'static str]) {
+        self.asked.borrow_mut().extend(keys);
+    }
+
     fn get(&self, key: &'static str) -> Option<&'a Node> {
         self.asked.borrow_mut().push(key);
         self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
@@ -102,7 +112,7 @@ impl<'a> Reader<'a> {
         match number(node) {
             Some(x) if range.allows(x) => Some(x),
             Some(x) => {
-                self.problem(key, format!("must be {}, but is {x}", range.text()));
+                self.problem(key, format!("must be {}, but is {}", range.text(), plain(x)));
                 None
             }
             None => {
@@ -270,6 +280,7 @@ impl<'a> Reader<'a> {
 
     /// Of keys that exclude each other, the one that is given. More than one is a problem.
     pub fn only_one(&self, keys: &[&'static str]) -> Option<&'static str> {
+        self.know(keys);
         let given: Vec<_> = keys.iter().filter(|key| self.has(key)).copied().collect();
         if given.len() > 1 {
             let rest = quoted_keys(&given[..given.len() - 1]);
@@ -304,6 +315,12 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// A number as people write it, without hundreds of zeros.
+fn plain(x: f64) -> String {
+    let long = x.is_finite() && x != 0.0 && !(1e-6..1e15).contains(&x.abs());
+    if long { format!("{x:e}") } else { format!("{x}") }
+}
+
 fn number(node: &Node) -> Option<f64> {
     match node.value {
         Value::Number(x) => Some(x),
@@ -331,4 +348,63 @@ fn quoted(words: &[&str]) -> String {
 
 fn quoted_keys(keys: &[&str]) -> String {
     keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tree::parse;
+    use super::*;
+
+    /// What is told of `text` when `read` reads it.
+    fn told(text: &str, read: impl FnOnce(&Reader)) -> Vec<String> {
+        let (root, _) = parse(text, 0);
+        let problems = RefCell::default();
+        let reader = Reader::new(&root, String::new(), &problems);
+        read(&reader);
+        reader.finish();
+        problems.into_inner().iter().map(|problem| format!("{problem:?}")).collect()
+    }
+
+    #[test]
+    fn numbers_are_read_within_their_range() {
+        assert!(
+            told("a = 1", |r| assert_eq!(r.number("a", Range::Positive), Some(1.0))).is_empty()
+        );
+        assert!(told("", |r| assert_eq!(r.number("a", Range::Positive), None)).is_empty());
+        for wrong in ["a = 0", "a = nan", "a = \"1\"", "a = [1]"] {
+            assert_eq!(told(wrong, |r| assert_eq!(r.number("a", Range::Positive), None)).len(), 1);
+        }
+        for wrong in ["a = [1, 2]", "a = [1, 2, inf]", "a = [1, 2, true]", "a = 1"] {
+            assert_eq!(told(wrong, |r| assert_eq!(r.vector("a"), None)).len(), 1);
+        }
+    }
+
+    #[test]
+    fn of_keys_that_exclude_each_other_none_is_unknown() {
+        let read = |r: &Reader| assert_eq!(r.only_one(&["a", "b"]), Some("a"));
+        let problems = told("a = 1\nb = 2", read);
+        assert_eq!(problems.len(), 1);
+        assert!(problems[0].contains("cannot stand beside `a`"), "{problems:?}");
+    }
+
+    #[test]
+    fn what_is_no_table_is_told_once() {
+        let problems = told("t = 3", |r| {
+            let inner = r.table("t").unwrap();
+            inner.problem("x", "is missing");
+            inner.finish();
+        });
+        assert_eq!(problems.len(), 1);
+        assert!(problems[0].contains("must be a table, but is an integer"), "{problems:?}");
+    }
+
+    #[test]
+    fn the_nearest_word() {
+        let known = ["gravity", "duration", "dt"];
+        assert_eq!(nearest("gravty", &known), Some("gravity"));
+        assert_eq!(nearest("zzz", &known), None);
+        assert_eq!(nearest("", &known), None);
+        assert_eq!(nearest("x", &[]), None);
+        assert_eq!([plain(0.0), plain(-1.0), plain(1e-300)], ["0", "-1", "1e-300"]);
+    }
 }

@@ -8,6 +8,9 @@ use toml::de::{DeTable, DeValue};
 
 use super::problem::{Problem, Source};
 
+/// A key of more parts than this leads nowhere.
+const MOST_PARTS: usize = 32;
+
 /// Where something stands: which source, and which bytes of it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Place {
@@ -93,8 +96,7 @@ fn from_value(value: Spanned<DeValue<'_>>, source: usize) -> Node {
         DeValue::String(text) => Value::String(text.into_owned()),
         DeValue::Integer(integer) => match i64::from_str_radix(integer.as_str(), integer.radix()) {
             Ok(integer) => Value::Integer(integer),
-            // too large for an integer: a float says the same within rounding
-            Err(_) => Value::Number(integer.as_str().parse().unwrap_or(f64::NAN)),
+            Err(_) => Value::Number(large(integer.as_str(), integer.radix())),
         },
         DeValue::Float(float) => Value::Number(float.as_str().parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(boolean) => Value::Boolean(boolean),
@@ -105,6 +107,15 @@ fn from_value(value: Spanned<DeValue<'_>>, source: usize) -> Node {
         DeValue::Table(table) => from_table(table, source),
     };
     Node { value, place }
+}
+
+/// An integer too large for an `i64`: a float says the same within rounding.
+fn large(digits: &str, radix: u32) -> f64 {
+    let digit = |c: char| c.to_digit(radix).map(f64::from);
+    match radix {
+        10 => digits.parse().unwrap_or(f64::NAN),
+        _ => digits.chars().filter_map(digit).fold(0.0, |x, d| x * f64::from(radix) + d),
+    }
 }
 
 /// Lays `KEY=VALUE` over the tree. KEY is dotted; `body.scale` reaches every body, `body.0.scale`
@@ -123,10 +134,9 @@ pub fn set(root: &mut Node, assignment: &str, source: usize) -> Result<Source, P
         Err(_) => Value::String(text.trim().to_owned()),
     };
     let path: Vec<&str> = key.trim().split('.').map(str::trim).collect();
-    if path.iter().any(|part| part.is_empty()) {
-        let message =
-            format!("`{key}` is no key; write it as `dt` or `collision.collision_stiffness`");
-        return Err(Problem::new(Place { source, span: 0..key.len() }, "", message));
+    if path.iter().any(|part| part.is_empty()) || path.len() > MOST_PARTS {
+        let message = "is no key; write it as `dt` or `collision.collision_stiffness`".to_owned();
+        return Err(Problem::new(Place { source, span: 0..key.len() }, key, message));
     }
     let node = Node { value: relocate(value, &place), place };
     let key_place = Place { source, span: 0..key.len() };
@@ -182,5 +192,68 @@ fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result
             Err(_) => items.iter_mut().try_for_each(|item| assign(item, path, new, place)),
         },
         other => Err(format!("`{part}` cannot be set inside {}", other.kind())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tree(text: &str) -> Node {
+        let (root, problems) = parse(text, 0);
+        assert!(problems.is_empty(), "{problems:?}");
+        root
+    }
+
+    /// The tree as text, without places.
+    fn told(node: &Node) -> String {
+        match &node.value {
+            Value::Table(entries) => {
+                let each = entries.iter().map(|e| format!("{}={}", e.key, told(&e.node)));
+                format!("{{{}}}", each.collect::<Vec<_>>().join(","))
+            }
+            Value::Array(items) => {
+                format!("[{}]", items.iter().map(told).collect::<Vec<_>>().join(","))
+            }
+            other => format!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn keys_and_values_know_their_place() {
+        let root = tree("a = 1\n[b]\nc = [true, \"x\"]\n");
+        let Value::Table(top) = &root.value else { panic!("no table") };
+        assert_eq!((top[0].place.span.clone(), top[0].node.place.span.clone()), (0..1, 4..5));
+        let Value::Table(b) = &top[1].node.value else { panic!("no table") };
+        let Value::Array(c) = &b[0].node.value else { panic!("no array") };
+        assert_eq!(c[1].place.span, 21..24);
+    }
+
+    #[test]
+    fn numbers_of_all_kinds() {
+        let text = "a = 1_000\nb = 0x10\nc = 1e3\nd = -inf\ne = 99999999999999999999\nf = 0xFFFFFFFFFFFFFFFFFF";
+        assert_eq!(
+            told(&tree(text)),
+            "{a=Integer(1000),b=Integer(16),c=Number(1000.0),d=Number(-inf),\
+             e=Number(1e20),f=Number(4.722366482869645e21)}"
+        );
+    }
+
+    #[test]
+    fn set_reaches_tables_bodies_and_what_is_not_there_yet() {
+        let mut root = tree("dt = 1\n[[body]]\nscale = 1\n[[body]]\n");
+        for assignment in ["dt=2", "body.scale=3", "body.0.scale = 4", "box.min=[0]", "w=a b", "e="]
+        {
+            set(&mut root, assignment, 1).unwrap();
+        }
+        assert_eq!(
+            told(&root),
+            "{dt=Integer(2),body=[{scale=Integer(4)},{scale=Integer(3)}],\
+             box={min=[Integer(0)]},w=String(\"a b\"),e=String(\"\")}"
+        );
+        let deep = vec!["a"; MOST_PARTS + 1].join(".") + "=1";
+        for wrong in ["dt", "=1", "a..b=1", "dt.x=1", "body.2.scale=1", deep.as_str()] {
+            assert!(set(&mut root, wrong, 1).is_err(), "{wrong}");
+        }
     }
 }

@@ -6,6 +6,9 @@ use tumble::{DQuat, DVec3, Material, MaterialOverride, Primitive, Sampling, Wall
 use super::description::{BodyScene, Geometry, MassScene, Scene};
 use super::geometry::{MASS_MODELS, ShapeScene};
 
+/// How every scene that a run wrote begins.
+pub const HEADER: &str = "# The scene as run, every default written out.";
+
 impl Scene {
     /// The scene as TOML, every default written out, meshes by full path and hash. Reading it
     /// again gives the same world.
@@ -44,8 +47,7 @@ impl Scene {
         });
         put_tables(&mut top, "wall", walls.collect());
         put_tables(&mut top, "body", self.bodies.iter().map(|b| Value::Table(body(b))).collect());
-        let header = "# The scene as run, every default written out.\n\n";
-        format!("{header}{top}")
+        format!("{HEADER}\n\n{top}")
     }
 
     /// Every wall with its own material: the box's faces first, then the single ones.

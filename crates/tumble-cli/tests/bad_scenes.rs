@@ -1,0 +1,244 @@
+//! Scenes that are wrong: status 2, file, line, column and key, what is allowed, the nearest key,
+//! all problems at once, and nothing written.
+
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{BODY, Desk, says};
+
+/// Each of these lines, put at the top of a scene that is well otherwise.
+fn at_the_top(cases: &[(&str, &[&str])]) {
+    let desk = Desk::new();
+    for (line, parts) in cases {
+        let message = desk.refused(format!("# \n{line}\n{BODY}"), &[]);
+        says(&message, parts);
+    }
+}
+
+/// Each of these lines, put into the only body.
+fn in_a_body(cases: &[(&str, &[&str])]) {
+    let desk = Desk::new();
+    for (line, parts) in cases {
+        let message = desk.refused(format!("{BODY}{line}\n"), &[]);
+        says(&message, parts);
+    }
+}
+
+#[test]
+fn unknown_keys_suggest_the_nearest() {
+    at_the_top(&[
+        ("gravty = [0, 0, 0]", &["`gravty` is not a known key", "s.toml:2:1", "mean `gravity`?"]),
+        (
+            "box = {min=[-9, -9, -9], max=[9, 9, 9], opne=[]}",
+            &["`box.opne`", ":2:41", "mean `open`?"],
+        ),
+        (
+            "[collision]\nstifness = 1",
+            &["`collision.stifness`", "s.toml:3:1", "`collision_stiffness`"],
+        ),
+        ("[[wall]]\nnormal = [0, 1, 0]\nofset = 1", &["`wall.0.ofset`", ":4:1", "mean `offset`?"]),
+        ("[output]\nintervall = 1", &["`output.intervall`", "s.toml:3:1", "mean `interval`?"]),
+        ("zzz = 1", &["known here: `body`, `box`"]),
+    ]);
+    in_a_body(&[
+        ("scael = 1", &["`body.0.scael`", "s.toml:4:1", "mean `scale`?"]),
+        (
+            "copies = {cuont = [1, 1, 1], count = [1, 1, 1], spacing = [1, 1, 1]}",
+            &["`body.0.copies.cuont`", "s.toml:4:11", "mean `count`?"],
+        ),
+    ]);
+    let desk = Desk::new();
+    says(
+        &desk.refused("[[body]]\nmseh = \"cat.obj\"\n", &[]),
+        &["`body.0` needs one of", "mean `mesh`?"],
+    );
+    // a misspelt shape does not make its keys unknown
+    let message = desk.refused("[[body]]\nshape = \"sphre\"\nradius = 1\nsegments = 3\n", &[]);
+    says(&message, &["`body.0.shape` must be one of \"sphere\"", "s.toml:2:9", "mean \"sphere\"?"]);
+    assert!(!message.contains("not a known key"), "{message}");
+}
+
+#[test]
+fn numbers_out_of_range() {
+    at_the_top(&[
+        ("dt = 0", &["`dt` must be above 0, but is 0", "s.toml:2:6"]),
+        ("dt = -1", &["`dt` must be above 0, but is -1", "s.toml:2:6"]),
+        ("dt = nan", &["`dt` must be above 0, but is NaN"]),
+        ("dt = inf", &["`dt` must be above 0, but is inf"]),
+        ("dt = -1e-300", &["but is -1e-300"]),
+        ("dt = 1e-300\nduration = 1e300", &["`dt` leads to inf steps", "s.toml:2:6"]),
+        ("duration = 1e18", &["`duration` leads to 1e21 steps", "s.toml:2:12"]),
+        ("duration = 1e-9", &["`duration` leads to no step at all", "0.001 s"]),
+        ("dt = 0xFFFFFFFFFFFFFFFFFFFFFFFF", &["no step at all"]),
+        ("dt = 9223372036854775808", &["no step at all"]),
+        ("velocity_damping_stiffness = -1", &["must be 0 or more, but is -1", ":2:30"]),
+        ("gravity = [0, nan, 0]", &["`gravity` must hold numbers that are finite", ":2:11"]),
+        ("[output]\ninterval = 0", &["`output.interval` must be above 0", ":3:12"]),
+        ("[collision]\ncollision_stiffness = -1", &["`collision.collision_stiffness` must be 0"]),
+        ("[[wall]]\nnormal = [0, 0, 0]", &["`wall.0.normal` must not be zero", ":3:10"]),
+        ("[[wall]]\noffset = 1", &["`wall.0.normal` is missing"]),
+        ("[box]\nmin = [1, 1, 1]\nmax = [2, 0, 2]", &["`box.max` must lie above `min`", ":4:7"]),
+        ("[box]\nmin = [1, 1, 1]", &["`box.max` is missing", ":2:1"]),
+        (
+            "[box]\nmin=[-1,-1,-1]\nmax=[1,1,1]\norientation = [0, 0, 0, 0]",
+            &["`box.orientation` must not be all zeros", ":5:15"],
+        ),
+        (
+            "[box]\nmin=[-1,-1,-1]\nmax=[1,1,1]\nopen = [\"y\"]",
+            &["`box.open` must be one of", "\"+y\"", ":5:9"],
+        ),
+    ]);
+    in_a_body(&[
+        ("particle_mass = -1", &["`body.0.particle_mass` must be above 0, but is -1", ":4:17"]),
+        ("mass = 0", &["`body.0.mass` must be above 0", ":4:8"]),
+        ("mass = 1\ndensity = 1", &["`body.0.density` cannot stand beside `mass`", ":5:11"]),
+        ("scale = 0", &["`body.0.scale` must be above 0", ":4:9"]),
+        ("orientation = [0, 0, 0, 0]", &["`body.0.orientation` must not be all zeros", ":4:15"]),
+        ("orientation = [1, 0, 0]", &["must be an array of 4 numbers", ":4:15"]),
+        ("radius = 1e200", &["`body.0.shape`", "1e100 m", ":2:9"]),
+        ("particle_mass = 1e308", &["`body.0.particle_mass` cannot work", "mass", ":4:17"]),
+        (
+            "initial_velocity = [1e200, 0, 0]",
+            &["`body.0` has an energy that is not a finite number"],
+        ),
+        ("initial_angular_velocity = [1e200, 0, 0]", &["`body.0` has an energy that is not"]),
+        ("position = [1e999, 0, 0]", &["`body.0.position`", ":4:12"]),
+        ("name = \"\"", &["`body.0.name` must not be empty"]),
+        ("name = \"a\\nb\"", &["`body.0.name` must not contain"]),
+        ("name = \"\\u001b[31m\"", &["`body.0.name` must not contain"]),
+        ("spacing = 1", &["`body.0.spacing` only goes with sampling"]),
+        ("sampling = \"volume\"", &["`body.0.sampling` \"volume\" needs `spacing`"]),
+        ("mass_model = \"soild\"", &["`body.0.mass_model` must be one of", "mean \"solid\"?"]),
+        ("particles = [[0, 0, 0]]", &["`body.0.particles` cannot stand beside `shape`"]),
+        (
+            "copies = {count = [1e9, 1, 1], spacing = [1, 1, 1]}",
+            &["`body.0.copies.count`", "at most 1000000"],
+        ),
+        ("copies = {count = [1e300, 1e300, 1], spacing = [1, 1, 1]}", &["at most 1000000"]),
+        ("copies = {count = [1.5, 1, 1], spacing = [1, 1, 1]}", &["whole numbers"]),
+        (
+            "copies = {}",
+            &["`body.0.copies.count` is missing", "`body.0.copies.spacing` is missing"],
+        ),
+        (
+            "copies = {count = [1, 1, 1], spacing = [1, 1, 1], seed = 99999999999999999999}",
+            &["`body.0.copies.seed` must be a whole number"],
+        ),
+    ]);
+}
+
+#[test]
+fn wrong_types() {
+    at_the_top(&[
+        ("dt = \"fast\"", &["`dt` must be a number, above 0, but is a string", ":2:6"]),
+        ("dt = 2026-01-01", &["`dt` must be a number", "a date"]),
+        ("gravity = -9.8", &["`gravity` must be an array of 3 numbers, but is a number"]),
+        ("gravity = [0, -9.8]", &["`gravity` must be an array of 3 numbers"]),
+        ("integrator = \"eulre\"", &["`integrator` must be one of", "mean \"euler\"?", ":2:14"]),
+        ("integrator = 3", &["`integrator` must be one of", "an integer"]),
+        ("description = 3", &["`description` must be a string"]),
+        ("wall = {normal = [0, 1, 0]}", &["write [[wall]] with two brackets"]),
+        ("output = []", &["`output` must be a table, but is an array"]),
+    ]);
+    let desk = Desk::new();
+    // one mistake, one message
+    let message = desk.refused(format!("box = 3\n{BODY}"), &[]);
+    assert!(!message.contains("is missing"), "{message}");
+    says(&desk.refused("body = 3\n", &[]), &["write [[body]] with two brackets", ":1:8"]);
+    says(&desk.refused("body = [3]\n", &[]), &["`body.0` must be a table", ":1:9"]);
+    says(&desk.refused("body = []\n", &[]), &["the scene has no body"]);
+    let particles = |points: &str| desk.refused(format!("[[body]]\nparticles = {points}\n"), &[]);
+    says(&particles("[]"), &["`body.0.particles` is empty", ":2:13"]);
+    says(&particles("3"), &["must be an array of points"]);
+    says(
+        &particles("[[0, 0, 0],\n[0, nan, 0]]"),
+        &["`body.0.particles.1` must be a point", ":3:1"],
+    );
+    says(&particles("[[0, 0]]"), &["`body.0.particles.0` must be a point"]);
+    says(&particles("[[1e300, 0, 0], [0, 0, 0]]"), &["so far apart"]);
+}
+
+#[test]
+fn all_problems_come_at_once() {
+    let desk = Desk::new();
+    let scene =
+        format!("dt = 0\nfoo = 1\n[output]\ninterval = 0\n{BODY}mass = -1\n{BODY}bar = 1\n");
+    let message = desk.refused(scene, &["--set", "duration=x"]);
+    says(&message, &["s.toml:1:6", "s.toml:2:1", "s.toml:4:12", "s.toml:8:8", "s.toml:12:1"]);
+    says(&message, &["--set:1:10", "6 problems; nothing was run"]);
+}
+
+#[test]
+fn bodies_that_cannot_stand_where_they_are() {
+    let desk = Desk::new();
+    let room = "[box]\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n";
+    let message = desk.refused(format!("{room}{BODY}position = [0, -3, 0]\n"), &[]);
+    says(&message, &["`body.0.position`", "starts outside", "2.000e0 m", "s.toml:7:12"]);
+    // of very many copies, one speaks for all
+    let copies = "copies = {count = [100, 100, 10], spacing = [1, 1, 1]}\n";
+    let message = desk.refused(format!("{room}{BODY}{copies}"), &[]);
+    assert_eq!(message.matches("error:").count(), 1, "{message}");
+
+    let named = |name: &str| format!("{BODY}name = \"{name}\"\n");
+    let message = desk.refused(format!("{}{}", named("a"), named("a")), &[]);
+    says(&message, &["`body.1.name`", "two bodies are called \"a\"", "s.toml:8:8"]);
+    let two = "copies = {count = [2, 1, 1], spacing = [1, 1, 1]}\n";
+    let message = desk.refused(format!("{}{}{two}", named("a 1"), named("a")), &[]);
+    says(&message, &["two bodies are called \"a 1\""]);
+    let many = "copies = {count = [1000, 600, 1], spacing = [1, 1, 1]}\n";
+    let message = desk.refused(format!("{}{many}{}{many}", named("a"), named("b")), &[]);
+    says(&message, &["`body` leads to 1200000 bodies; at most 1000000"]);
+}
+
+#[test]
+fn files_that_are_no_scene() {
+    let desk = Desk::new();
+    std::fs::create_dir(desk.path("folder")).unwrap();
+    says(&desk.tumble(&["run", "folder"]).ends_with(2).err, &["folder is a folder"]);
+    says(&desk.tumble(&["run", "no.toml"]).ends_with(2).err, &["no file", "`no.toml`"]);
+    says(&desk.tumble(&["run", "/dev/zero"]).ends_with(2).err, &["no ordinary file"]);
+    says(&desk.refused("", &[]), &["the scene has no body", "shape = \"sphere\""]);
+    says(&desk.refused(b"dt = 1\xff", &[]), &["s.toml is no scene", "byte 6"]);
+    says(&desk.refused("dt = ", &[]), &["s.toml:1:"]);
+    says(&desk.refused("dt = 1\ndt = 2", &[]), &["duplicate key", "s.toml:2:1"]);
+    says(&desk.refused(common::TETRAHEDRON, &[]), &["s.toml:1:"]);
+}
+
+#[test]
+fn endless_files_give_short_messages() {
+    let desk = Desk::new();
+    let start = std::time::Instant::now();
+    let garbage: String =
+        (0..10_000_000u64).map(|i| (32 + ((i * 2_654_435_761) >> 20) % 95) as u8 as char).collect();
+    let scenes = [
+        format!("x = {}", "[".repeat(200_000)),
+        format!("x = {}", "{a=".repeat(200_000)),
+        format!("[{}a]", "a.".repeat(200_000)),
+        format!("{} = 1", "k".repeat(1_000_000)),
+        format!("integrator = \"{}\"", "e".repeat(1_000_000)),
+        format!("{BODY}name = \"{}\"", "n".repeat(1_000_000)),
+        format!("[[body]]\nparticles = [{}]", "[nan, 0, 0],\n".repeat(100_000)),
+        format!("[[body]]\nparticles = [{}]", "[nan, 0, 0],".repeat(20_000)),
+        "[[body]]\nmass = -1\n".repeat(20_000),
+        garbage,
+    ];
+    for scene in scenes {
+        let message = desk.refused(scene, &[]);
+        assert!(message.len() < 100_000, "{}", message.len());
+    }
+    assert!(start.elapsed() < std::time::Duration::from_secs(60));
+}
+
+#[test]
+fn line_ends_and_marks_of_other_systems_are_fine() {
+    let desk = Desk::new();
+    let scene = format!("\u{feff}duration = 0.01\n{BODY}").replace('\n', "\r\n");
+    desk.write("good.toml", &scene);
+    desk.run(&["good.toml"], "o");
+    let message = desk.refused(scene.replace("shape", "shap"), &[]);
+    says(&message, &["s.toml:3:1", "mean `shape`?"]);
+    // columns count from 1, the mark is none
+    let message = desk.refused("\u{feff}dt = 0\r\n", &[]);
+    says(&message, &["s.toml:1:6"]);
+}
