@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use tumble_io::run::{Finished, Progress, RunError, RunFolder};
-use tumble_io::scene::{Loaded, load_builtin, load_file};
+use tumble_io::scene::{LoadOptions, Loaded, load_builtin, load_file};
 
 use crate::scenes::unknown_scene;
 use crate::table::{count, short, table};
@@ -30,7 +30,7 @@ pub struct RunArgs {
     /// Simulated seconds, instead of the scene's
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration: Option<String>,
-    /// Write over the results of another run in --out
+    /// Write over the results of another run in --out, and accept a dt above the critical one
     #[arg(long)]
     force: bool,
 }
@@ -58,11 +58,12 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
 fn load(args: &RunArgs) -> Result<Loaded, Failure> {
     let mut sets = args.set.clone();
     sets.extend(args.duration.iter().map(|seconds| format!("duration={seconds}")));
+    let options = LoadOptions { sets, force: args.force };
     let path = Path::new(&args.scene);
-    let loaded = match load_builtin(&args.scene, &sets) {
+    let loaded = match load_builtin(&args.scene, &options) {
         // a file of that very name in the folder is still reached as ./NAME
         Some(loaded) => loaded,
-        None if path.exists() => load_file(path, &sets),
+        None if path.exists() => load_file(path, &options),
         None => return Err(Failure::Call(unknown_scene(&args.scene))),
     };
     loaded.map_err(|error| {

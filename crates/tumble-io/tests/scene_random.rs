@@ -7,11 +7,12 @@ use std::path::Path;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
-use tumble_io::scene::{BUILTIN, Loaded, SceneError, Source, load_text};
+use tumble_io::scene::{BUILTIN, LoadOptions, Loaded, SceneError, Source, load_text};
 
 fn load(text: &str, sets: &[String]) -> Result<Loaded, SceneError> {
     let source = Source { name: "s.toml".to_owned(), text: text.to_owned() };
-    load_text("s", source, Path::new("/nowhere"), sets)
+    let options = LoadOptions { sets: sets.to_vec(), force: false };
+    load_text("s", source, Path::new("/nowhere"), &options)
 }
 
 /// A world that can be written, read again and is then the same; or problems, each with a place.

@@ -67,6 +67,19 @@ impl MaterialOverride {
     }
 }
 
+impl From<Material> for MaterialOverride {
+    /// One that says everything that the material says.
+    fn from(material: Material) -> Self {
+        Self {
+            collision_stiffness: Some(material.collision_stiffness),
+            damping: Some(material.damping),
+            friction_stiffness: Some(material.friction_stiffness),
+            friction_spring: material.friction_spring,
+            friction_damping: material.friction_damping,
+        }
+    }
+}
+
 impl Material {
     /// The material between a wall and a body: what only one of them says holds, and a wall is
     /// heard before a body.

@@ -25,6 +25,8 @@ pub struct Scene {
     pub gravity: DVec3,
     /// Drag c of the medium on every particle (N·s/m).
     pub velocity_damping_stiffness: f64,
+    /// Refine steps in contact until less of the energy in play than this is unaccounted for.
+    pub energy_tolerance: Option<f64>,
     /// The material of contacts that neither wall nor body says otherwise about.
     pub collision: Material,
     /// The box, if there is one.
@@ -35,6 +37,8 @@ pub struct Scene {
     pub bodies: Vec<BodyScene>,
     /// What to write.
     pub output: OutputScene,
+    /// Accept a step above the critical one: said by the caller, not by the file.
+    pub force: bool,
 }
 
 /// `[box]`.

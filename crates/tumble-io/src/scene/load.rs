@@ -26,11 +26,20 @@ pub struct Loaded {
     pub world: World,
 }
 
-/// Reads the scene file at `path`, with `sets` (each `KEY=VALUE`) laid over it.
+/// What a caller lays over a scene.
+#[derive(Clone, Debug, Default)]
+pub struct LoadOptions {
+    /// Assignments `KEY=VALUE` laid over the scene's own, in order.
+    pub sets: Vec<String>,
+    /// Accept a step above the critical one.
+    pub force: bool,
+}
+
+/// Reads the scene file at `path`, with `options` laid over it.
 ///
 /// # Errors
 /// [`SceneError`] holds everything that is wrong.
-pub fn load_file(path: &Path, sets: &[String]) -> Result<Loaded, SceneError> {
+pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let file = path.display().to_string();
     let text = read_text(path).map_err(|message| {
         let problem = Problem::new(Place { source: usize::MAX, span: 0..0 }, "", message);
@@ -38,17 +47,17 @@ pub fn load_file(path: &Path, sets: &[String]) -> Result<Loaded, SceneError> {
     })?;
     let name = path.file_stem().map_or_else(|| file.clone(), |s| s.to_string_lossy().into_owned());
     let folder = path.parent().unwrap_or(Path::new("."));
-    load_text(&name, Source { name: file, text }, folder, sets)
+    load_text(&name, Source { name: file, text }, folder, options)
 }
 
 /// Reads the built-in scene `name`; `None` if there is none of that name.
 ///
 /// # Errors
-/// [`SceneError`] holds everything that is wrong, which can only be in `sets`.
-pub fn load_builtin(name: &str, sets: &[String]) -> Option<Result<Loaded, SceneError>> {
+/// [`SceneError`] holds everything that is wrong, which can only be in the options.
+pub fn load_builtin(name: &str, options: &LoadOptions) -> Option<Result<Loaded, SceneError>> {
     let scene = builtin(name)?;
     let source = Source { name: format!("{name} (built in)"), text: scene.text.to_owned() };
-    Some(load_text(name, source, Path::new("."), sets))
+    Some(load_text(name, source, Path::new("."), options))
 }
 
 fn read_text(path: &Path) -> Result<String, String> {
@@ -88,7 +97,7 @@ pub fn load_text(
     name: &str,
     source: Source,
     folder: &Path,
-    sets: &[String],
+    options: &LoadOptions,
 ) -> Result<Loaded, SceneError> {
     let (mut root, syntax) = tree::parse(&source.text, 0);
     let mut sources = vec![source];
@@ -97,7 +106,7 @@ pub fn load_text(
         return Err(SceneError::new(sources, syntax));
     }
     let problems = RefCell::new(Vec::new());
-    for assignment in sets {
+    for assignment in &options.sets {
         let index = sources.len();
         let told = Source { name: "--set".to_owned(), text: assignment.clone() };
         sources.push(told);
@@ -106,6 +115,7 @@ pub fn load_text(
         }
     }
     let (mut scene, sound) = read::scene(&root, name.to_owned(), &problems);
+    scene.force = options.force;
     let world = world(&mut scene, &sound, &root, folder, &problems);
     let problems = problems.into_inner();
     match world {
@@ -136,6 +146,8 @@ fn world(
         .velocity_damping_stiffness(scene.velocity_damping_stiffness)
         .dt(scene.dt)
         .integrator(scene.integrator)
+        .energy_tolerance(scene.energy_tolerance)
+        .force(scene.force)
         .material(scene.collision);
     for (wall, material) in scene.all_walls() {
         builder = builder.wall_of(wall, material);
@@ -250,6 +262,7 @@ fn guilty(
         BuildError::Body { body, quantity, .. } => (Some(body), *quantity),
         BuildError::Outside { body, .. } => (Some(body), "position"),
         BuildError::SameName { body } => (Some(body), "name"),
+        BuildError::Unstable { .. } => (None, "dt"),
     };
     let index = body.and_then(|name| owners.get(name).copied());
     // a mass may be given in three ways

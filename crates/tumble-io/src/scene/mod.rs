@@ -19,7 +19,7 @@ pub use builtin::{BUILTIN, Builtin, builtin};
 pub use description::{
     BodyScene, BoxScene, Copies, Geometry, MassScene, OutputScene, Scene, WallScene,
 };
-pub use load::{Loaded, load_builtin, load_file, load_text};
+pub use load::{LoadOptions, Loaded, load_builtin, load_file, load_text};
 pub use problem::{SceneError, Source};
 pub use reader::nearest;
 pub(crate) use write::HEADER;

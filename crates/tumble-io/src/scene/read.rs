@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use tumble::{DQuat, DVec3, Integrator, Material, MaterialOverride, WallBox, WallPlane};
+use tumble::{DQuat, DVec3, Damping, Integrator, Material, MaterialOverride, WallBox, WallPlane};
 
 use super::body::{self, MOST_COPIES};
 use super::description::{BodyScene, BoxScene, Copies, OutputScene, Scene, WallScene};
@@ -49,10 +49,12 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
             .number("velocity_damping_stiffness", Range::NotNegative)
             .unwrap_or(0.0),
         collision,
+        energy_tolerance: top.number("energy_tolerance", Range::BelowOne),
         walls_of_box,
         walls,
         bodies,
         output: top.table("output").map_or_else(OutputScene::default, output),
+        force: false,
     };
     top.finish();
     (scene, sound)
@@ -80,17 +82,25 @@ fn bodies(top: &Reader, problems: &RefCell<Vec<Problem>>) -> (Vec<BodyScene>, Ve
 }
 
 fn integrator(top: &Reader) -> Integrator {
-    const NAMES: [&str; 1] = ["euler"];
+    const NAMES: [&str; 2] = ["splitting", "euler"];
     match top.choice("integrator", &NAMES) {
         Some("euler") => Integrator::Euler,
+        Some("splitting") => Integrator::Splitting,
         _ => Integrator::default(),
     }
 }
 
 /// The keys of a material, in any table that may hold them.
 pub fn material(reader: &Reader) -> MaterialOverride {
+    reader.only_one(&["collision_damping", "restitution"]);
+    let dashpot = reader.number("collision_damping", Range::NotNegative).map(Damping::Dashpot);
+    let restitution = reader.number("restitution", Range::UpToOne).map(Damping::Restitution);
     MaterialOverride {
         collision_stiffness: reader.number("collision_stiffness", Range::NotNegative),
+        damping: dashpot.or(restitution),
+        friction_stiffness: reader.number("friction_stiffness", Range::NotNegative),
+        friction_spring: reader.number("friction_spring", Range::NotNegative),
+        friction_damping: reader.number("friction_damping", Range::NotNegative),
     }
 }
 

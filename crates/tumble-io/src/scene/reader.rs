@@ -16,6 +16,10 @@ pub enum Range {
     Positive,
     /// 0 or more.
     NotNegative,
+    /// Above 0, up to 1.
+    UpToOne,
+    /// Above 0, below 1.
+    BelowOne,
 }
 
 impl Range {
@@ -25,6 +29,8 @@ impl Range {
                 Self::Finite => true,
                 Self::Positive => x > 0.0,
                 Self::NotNegative => x >= 0.0,
+                Self::UpToOne => x > 0.0 && x <= 1.0,
+                Self::BelowOne => x > 0.0 && x < 1.0,
             }
     }
 
@@ -33,6 +39,8 @@ impl Range {
             Self::Finite => "finite",
             Self::Positive => "above 0",
             Self::NotNegative => "0 or more",
+            Self::UpToOne => "above 0, up to 1",
+            Self::BelowOne => "above 0 and below 1",
         }
     }
 }

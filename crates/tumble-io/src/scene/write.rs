@@ -1,7 +1,7 @@
 //! A scene as TOML again, every default written out.
 
 use toml::{Table, Value};
-use tumble::{DQuat, DVec3, Material, MaterialOverride, Primitive, Sampling, WallBox, WallPlane};
+use tumble::{DQuat, DVec3, Damping, MaterialOverride, Primitive, Sampling, WallBox, WallPlane};
 
 use super::description::{BodyScene, Geometry, MassScene, Scene};
 use super::geometry::{MASS_MODELS, ShapeScene};
@@ -22,7 +22,12 @@ impl Scene {
         put(&mut top, "integrator", self.integrator.name());
         put(&mut top, "gravity", vector(self.gravity));
         put(&mut top, "velocity_damping_stiffness", self.velocity_damping_stiffness);
-        put(&mut top, "collision", collision(&self.collision));
+        if let Some(tolerance) = self.energy_tolerance {
+            put(&mut top, "energy_tolerance", tolerance);
+        }
+        let mut collision = Table::new();
+        put_material(&mut collision, &self.collision.into());
+        put(&mut top, "collision", collision);
         put(&mut top, "output", {
             let mut output = Table::new();
             put(&mut output, "interval", self.output.interval);
@@ -174,16 +179,21 @@ fn put_shape(table: &mut Table, shape: &ShapeScene) {
     }
 }
 
-fn collision(material: &Material) -> Table {
-    let mut table = Table::new();
-    put(&mut table, "collision_stiffness", material.collision_stiffness);
-    table
-}
-
 fn put_material(table: &mut Table, material: &MaterialOverride) {
-    if let Some(k) = material.collision_stiffness {
-        put(table, "collision_stiffness", k);
+    let mut number = |key, value: Option<f64>| {
+        if let Some(value) = value {
+            put(table, key, value);
+        }
+    };
+    number("collision_stiffness", material.collision_stiffness);
+    match material.damping {
+        Some(Damping::Dashpot(c)) => number("collision_damping", Some(c)),
+        Some(Damping::Restitution(e)) => number("restitution", Some(e)),
+        None => {}
     }
+    number("friction_stiffness", material.friction_stiffness);
+    number("friction_spring", material.friction_spring);
+    number("friction_damping", material.friction_damping);
 }
 
 fn put(table: &mut Table, key: &str, value: impl Into<Value>) {
