@@ -155,7 +155,7 @@ initial_angular_velocity = [1.0, 5.0, 2.0]
 
 fn cat() -> Outcome {
     let mut checks = Vec::new();
-    for (tolerance, bound) in [(None, 1e-3), (Some("1e-7"), 1e-6)] {
+    for (tolerance, bound) in [(None, 1e-3), (Some("1e-6"), 1e-6)] {
         let source = Source { name: "cat".to_owned(), text: CAT_SCENE.to_owned() };
         let sets = tolerance.map(|t| format!("energy_tolerance={t}")).into_iter().collect();
         let options = LoadOptions { sets, force: false };
