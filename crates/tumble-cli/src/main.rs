@@ -4,6 +4,7 @@ mod info;
 mod run;
 mod scenes;
 mod table;
+mod verify;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -40,6 +41,8 @@ enum Command {
     Scenes(scenes::ScenesArgs),
     /// Show what a mesh is: particles, mass, centre, principal moments, watertight or not
     Info(info::InfoArgs),
+    /// Hold the physics against theory: expected, measured, bound, verdict
+    Verify(verify::VerifyArgs),
 }
 
 fn main() -> ExitCode {
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Scenes(args) => scenes::scenes(&args),
         Command::Info(args) => info::info(&args),
+        Command::Verify(args) => verify::verify(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -39,7 +39,7 @@ impl Recorder {
             }
             if self.seen.is_multiple_of(self.stride) {
                 self.frames.push(frame.clone());
-                self.rows.push(row.clone());
+                self.rows.push(row);
             }
         }
         self.last = Some((frame, row));

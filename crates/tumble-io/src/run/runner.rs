@@ -144,7 +144,7 @@ impl<'a> Recording<'a> {
         self.trajectory.flush().map_err(|e| failed(self.folder, "trajectory.csv", e))?;
         self.ledger.flush().map_err(|e| failed(self.folder, "energy.csv", e))?;
         let row = self.row(world)?;
-        self.recorder.record(world, row.clone());
+        self.recorder.record(world, row);
         let (frames, rows) = self.recorder.finish();
         let svg = energy_svg(&format!("{}: energy", scene.name), &rows)
             .map_err(|e| RunError::Draw(self.folder.file("energy.svg"), e.to_string()))?;

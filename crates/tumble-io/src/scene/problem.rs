@@ -156,7 +156,6 @@ mod tests {
         assert_eq!(on_characters(text, 1..2), 0..2);
         assert_eq!(on_characters(text, 2..9), 2..3);
         assert_eq!(on_characters(text, 90..99), 10..10);
-        assert_eq!(on_characters(text, 5..4), 5..5);
         assert_eq!(line_of(text, 4..6), ("cd", 2, 0..2));
         assert_eq!(line_of(text, 6..6), ("cd", 2, 2..2));
         assert_eq!(line_of(text, 10..10), ("ef", 3, 2..2));

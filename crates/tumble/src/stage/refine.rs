@@ -16,6 +16,8 @@ use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, Scratch, St
 const FINEST: u32 = 24;
 /// Parts of at least this power of one half are composed to order six.
 const COMPOSED: u32 = 4;
+/// Share of the tolerance that even the shortest part may use up.
+const LEAST_SHARE: f64 = 1.0 / 1024.0;
 /// Weights of the nine leaps.
 const WEIGHTS: [f64; 9] = [W1, W2, W3, W4, W5, W4, W3, W2, W1];
 const W1: f64 = 0.392_161_444_007_314_139_28;
@@ -96,7 +98,9 @@ impl Mover<'_> {
             let part = self.part(size);
             let end = self.account();
             let off = end.total() + part.lost() - start.total();
-            let bound = (tolerance * in_play.max(end.kinetic + end.elastic))
+            // a part may use up its share of the tolerance, a short one across a kink a little more
+            let share = (size as f64 / whole as f64).max(LEAST_SHARE);
+            let bound = (tolerance * share * in_play.max(end.kinetic + end.elastic))
                 .max(start.rounding() + end.rounding());
             let touched = part.max_depth > 0.0 || start.elastic > 0.0 || end.elastic > 0.0;
             lost.evaluations += part.evaluations;
