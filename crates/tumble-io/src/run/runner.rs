@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::time::{Duration, Instant};
 
-use tumble::{DVec3, World};
+use tumble::{DVec3, World, critical_dt};
 
 use super::folder::{RunError, RunFolder};
 use super::ledger::{LEDGER_HEADER, ledger_row, line};
@@ -223,6 +223,8 @@ fn summarise(scene: &Scene, world: &World, clock: Duration, energy: &EnergyRow) 
         energy_start: energy.total - energy.residual,
         energy_end: energy.total,
         energy_residual: energy.residual,
+        critical_dt: critical_dt(world.model()).map(|critical| critical.dt),
+        force_evaluations: world.state().tally.evaluations,
         max_depth: world.state().tally.max_depth,
         state_hash: world.state().hash(),
     }
