@@ -26,6 +26,7 @@ impl State {
                 put(f64::from(spring.wall));
                 put(f64::from(spring.particle));
                 spring.anchor.to_array().into_iter().for_each(&mut put);
+                spring.stretch.to_array().into_iter().for_each(&mut put);
             }
         }
         let tally = &self.tally;

@@ -63,6 +63,8 @@ pub struct FrictionSpring {
     /// Where on the wall the spring is held (m): where the particle arrived, or has slipped to.
     /// Only its part along the wall counts.
     pub anchor: DVec3,
+    /// Its stretch at the latest kick (m), along the wall, from the anchor to the particle.
+    pub stretch: DVec3,
 }
 
 /// Sums and extremes over the steps taken so far.

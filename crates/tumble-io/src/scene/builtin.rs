@@ -19,8 +19,18 @@ macro_rules! builtin {
 }
 
 /// All built-in scenes, in the order in which they teach.
-pub const BUILTIN: [Builtin; 9] =
-    builtin!["task1", "task2", "task1-cat", "task2-cat", "top", "racket", "coin", "slope", "many",];
+pub const BUILTIN: [Builtin; 10] = builtin![
+    "task1",
+    "task2",
+    "task1-cat",
+    "task2-cat",
+    "top",
+    "racket",
+    "coin",
+    "slope",
+    "many",
+    "bounce",
+];
 
 /// The built-in scene of that name.
 pub fn builtin(name: &str) -> Option<Builtin> {

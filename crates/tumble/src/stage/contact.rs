@@ -131,10 +131,15 @@ impl<'a> Placed<'a> {
 
     /// Energy in one friction spring (J).
     fn stored(&self, model: &Model, spring: &FrictionSpring) -> f64 {
-        let wall = spring.wall as usize;
+        let stiffness = self.body.contacts[spring.wall as usize].friction_spring;
+        0.5 * stiffness * self.stretch(model, spring).length_squared()
+    }
+
+    /// From the anchor of a friction spring to its particle, along the wall (m).
+    fn stretch(&self, model: &Model, spring: &FrictionSpring) -> DVec3 {
         let arm = self.rotation * self.body.shape.particles().get(spring.particle as usize);
-        let stretch = tangential(self.position + arm - spring.anchor, model.walls[wall].normal);
-        0.5 * self.body.contacts[wall].friction_spring * stretch.length_squared()
+        let normal = model.walls[spring.wall as usize].normal;
+        tangential(self.position + arm - spring.anchor, normal)
     }
 }
 
@@ -191,31 +196,33 @@ impl Touch<'_> {
             return;
         }
         let here = place.position + arm;
-        let mut anchor = self.anchor(key).unwrap_or(here);
+        let old = self.spring(key);
+        let mut anchor = old.map_or(here, |spring| spring.anchor);
         let mut stretch = tangential(here - anchor, n);
         let limit = law.friction * normal;
         let pull = law.friction_spring * stretch.length();
         if pull > limit {
-            // the work of the force that slips, along the way that the anchor slips
-            self.forces.slip += limit * (pull - limit) / law.friction_spring;
-            stretch *= limit / pull;
+            let held = stretch * (limit / pull);
+            let before = old.map_or(DVec3::ZERO, |spring| spring.stretch);
+            self.forces.slip += slip(law, before, stretch, held);
+            stretch = held;
             anchor = here - stretch;
         }
         let hold = stretch * -law.friction_spring;
         let brake = within(hold, tangential(u, n) * -law.friction_damping, limit);
         self.forces.friction += at(arm, hold);
         self.forces.dashpot += at(arm, brake);
-        self.next.push(FrictionSpring { wall: key.0, particle: key.1, anchor });
+        self.next.push(FrictionSpring { wall: key.0, particle: key.1, anchor, stretch });
     }
 
-    /// The anchor that this contact had before; springs passed over on the way have come free.
-    fn anchor(&mut self, key: (u32, u32)) -> Option<DVec3> {
+    /// The spring that this contact had before; those passed over on the way have come free.
+    fn spring(&mut self, key: (u32, u32)) -> Option<FrictionSpring> {
         while let Some((first, rest)) = self.old.split_first() {
             match (first.wall, first.particle).cmp(&key) {
                 Ordering::Less => self.release(first),
                 Ordering::Equal => {
                     self.old = rest;
-                    return Some(first.anchor);
+                    return Some(*first);
                 }
                 Ordering::Greater => return None,
             }
@@ -231,10 +238,21 @@ impl Touch<'_> {
         }
     }
 
-    /// A spring whose particle has left is gone, and its energy is lost to slip.
+    /// A spring whose particle has left is gone, and what it held is lost to slip.
     fn release(&mut self, spring: &FrictionSpring) {
-        self.forces.slip += self.place.stored(self.model, spring);
+        let law = &self.place.body.contacts[spring.wall as usize];
+        let stretch = self.place.stretch(self.model, spring);
+        self.forces.slip += slip(law, spring.stretch, stretch, DVec3::ZERO);
     }
+}
+
+/// Energy (J) that a friction spring loses when its anchor slips, with its stretch `before`, at the latest
+/// kick, and now, as it would be and as it is `held`.
+///
+/// On the way from kick to kick the kicks take the mean of their forces from the motion; what of that
+/// the spring does not hold is lost: ½ k_t (ξ₀ + ξ')·(ξ − ξ').
+fn slip(law: &ContactLaw, before: DVec3, stretch: DVec3, held: DVec3) -> f64 {
+    0.5 * law.friction_spring * (before + held).dot(stretch - held)
 }
 
 /// A force on the particle at `arm`, as a wrench about the centre of mass.
