@@ -29,7 +29,15 @@ fn the_folder_holds_what_the_contract_says() {
     let summary = desk.run(&["task2", "--duration", "0.1"], "o");
     assert_eq!(
         desk.files("o"),
-        ["energy.csv", "energy.svg", "motion.png", "scene.toml", "summary.json", "trajectory.csv"]
+        [
+            "checkpoint.tumble",
+            "energy.csv",
+            "energy.svg",
+            "motion.png",
+            "scene.toml",
+            "summary.json",
+            "trajectory.csv"
+        ]
     );
     let keys = [
         "version",

@@ -51,7 +51,9 @@ impl History {
             Ok(Some(row)) => (row.time / scene.dt).round() as u64,
             _ => scene.next_frame(last),
         };
-        if !scene.is_frame(first) {
+        let is_frame =
+            if first > last { first == scene.next_frame(last) } else { scene.is_frame(first) };
+        if !is_frame {
             return Err(ledger.wrong("has a first row of a time without a frame"));
         }
         let mut step = first;
