@@ -3,15 +3,15 @@
 #![allow(clippy::unwrap_used)]
 
 use tumble::{
-    Body, DQuat, DVec3, Damping, Integrator, Material, Primitive, Shape, State, StateError,
-    WallPlane, World,
+    Body, DQuat, DVec3, Damping, Integrator, MassModel, Material, Primitive, Sampling, Shape,
+    State, StateError, WallPlane, World,
 };
 
 /// A box that tumbles down a slope with friction and dashpots, and one that falls beside it.
 fn world(integrator: Integrator, tolerance: Option<f64>) -> World {
     let size = DVec3::new(0.3, 0.2, 0.25);
     let mesh = Primitive::Box { size, divisions: 2 }.mesh().unwrap();
-    let shape = Shape::of_mesh(&mesh, Default::default(), Default::default()).unwrap();
+    let shape = Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Particles).unwrap();
     let body = Body::new(shape)
         .position(DVec3::new(0.0, 0.3, 0.0))
         .orientation(DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9))

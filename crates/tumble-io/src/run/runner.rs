@@ -131,7 +131,7 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// After a step that failed, a checkpoint of the state before it. The failure is what is to be
+    /// After a step that failed, a checkpoint of the last state before it that can be gone on from. The failure is what is to be
     /// told, whatever becomes of the checkpoint.
     fn keep_last_good(&mut self, error: &RunError) {
         let last = match error {
@@ -139,17 +139,19 @@ impl<'a> Run<'a> {
             RunError::Energy(_) => self.kept.step,
             _ => return,
         };
-        if self.world.restore(std::mem::take(&mut self.kept)).is_err() {
+        let mut good = std::mem::take(&mut self.kept);
+        if self.world.restore(good.clone()).is_err() {
             return;
         }
+        // the steps since then are taken once more, one by one
         while self.world.state().step < last {
-            if self.world.step().is_err() {
-                return;
+            let stepped = self.world.step();
+            if stepped.is_err() || self.world.state().fits(self.world.model()).is_err() {
+                break;
             }
+            keep(&mut good, self.world.state());
         }
-        if self.world.state().fits(self.world.model()).is_ok() {
-            let _ = self.recording.checkpoint(&self.scene, self.world.state());
-        }
+        let _ = self.recording.checkpoint(&self.scene, &good);
     }
 }
 
