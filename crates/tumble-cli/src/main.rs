@@ -5,6 +5,7 @@ mod resume;
 mod run;
 mod scenes;
 mod table;
+mod verify;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -43,6 +44,8 @@ enum Command {
     Scenes(scenes::ScenesArgs),
     /// Show what a mesh is: particles, mass, centre, principal moments, watertight or not
     Info(info::InfoArgs),
+    /// Hold the physics against theory: expected, measured, bound, verdict
+    Verify(verify::VerifyArgs),
 }
 
 fn main() -> ExitCode {
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
         Command::Resume(args) => resume::resume(&args),
         Command::Scenes(args) => scenes::scenes(&args),
         Command::Info(args) => info::info(&args),
+        Command::Verify(args) => verify::verify(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -20,6 +20,7 @@ impl State {
                 [q.w, q.x, q.y, q.z].into_iter().for_each(&mut put);
             }
             body.angular_momentum.to_array().into_iter().for_each(&mut put);
+            put(body.energy_owed);
             put(f64::from_bits(springs.len() as u64));
             for spring in springs {
                 put(f64::from(spring.wall));

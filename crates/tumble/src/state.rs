@@ -31,6 +31,9 @@ pub struct BodyState {
     pub orientation_rest: DQuat,
     /// Angular momentum L about the centre of mass, world axes (kg·m²/s).
     pub angular_momentum: DVec3,
+    /// Energy (J) that refined steps in contact have gained by error and not yet been able to give
+    /// back; 0 without `energy_tolerance`.
+    pub energy_owed: f64,
 }
 
 impl Default for BodyState {
@@ -42,6 +45,7 @@ impl Default for BodyState {
             orientation: DQuat::IDENTITY,
             orientation_rest: NO_REST,
             angular_momentum: DVec3::ZERO,
+            energy_owed: 0.0,
         }
     }
 }

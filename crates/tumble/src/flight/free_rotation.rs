@@ -21,12 +21,14 @@
 
 use glam::DVec3;
 
-/// u turns by less than this (rad) in a piece, so that its series converges fast.
+/// λ t of a piece, so that its series converges fast.
 const PIECE: f64 = 0.25;
 /// Coefficients kept at most; a piece needs fewer.
 const ORDER: usize = 20;
 /// Pieces in a step from which on it pays to take whole periods out.
 const MANY_PIECES: f64 = 256.0;
+/// Distance from the separatrix, squared and relative, below which u counts as this far from it.
+const NEAREST: f64 = 1e-300;
 
 /// A rotation minus the identity: small ones keep all their digits.
 #[derive(Clone, Copy, Debug)]
@@ -73,17 +75,18 @@ pub fn free_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> Turn {
     let euler = Euler::new(inverse, length);
     let mut u = momentum / length;
     let start = u;
+    if euler.stands(u) {
+        return Turn::about(u, euler.spin.dot(u * u) * time);
+    }
     let mut rest = time;
     let mut turn = Turn::NONE;
-    if euler.rate * time.abs() > MANY_PIECES * PIECE
-        && let Some(period) = euler.period(u)
-        && period < time.abs()
-    {
-        let periods = (time / period).trunc();
-        rest = time - periods * period;
-        turn = Turn::about(start, euler.angle_of_period(u, period) * periods);
+    let pace = euler.pace(u);
+    if pace.rate * time.abs() > MANY_PIECES * PIECE && pace.period < time.abs() {
+        let periods = (time / pace.period).trunc();
+        rest = libm::fmod(time, pace.period);
+        turn = Turn::about(start, euler.angle_of_period(u, &pace) * periods);
     }
-    let pieces = (euler.rate * rest.abs() / PIECE).ceil().max(1.0);
+    let pieces = (pace.rate * rest.abs() / PIECE).ceil().max(1.0);
     for _ in 0..pieces as u64 {
         let (piece, end) = euler.piece(u, rest / pieces);
         turn = turn.after(piece);
@@ -104,15 +107,27 @@ struct Euler {
     spin: DVec3,
     /// (s_z − s_y, s_x − s_z, s_y − s_x) of `spin`: u_x' = c_x u_y u_z and so on.
     couple: DVec3,
-    /// The largest of `couple`: u turns no faster (rad/s).
+}
+
+/// How fast u moves on its closed way.
+struct Pace {
+    /// λ of the elliptic functions that u is made of (rad/s); no complex pole is nearer than π/2 to
+    /// λ t, whatever the modulus, so that pieces of λ t are right for their series.
     rate: f64,
+    /// The time after which u comes back (s), infinite where it does not move.
+    period: f64,
 }
 
 impl Euler {
     fn new(inverse: DVec3, length: f64) -> Self {
         let spin = inverse * length;
         let couple = DVec3::new(spin.z - spin.y, spin.x - spin.z, spin.y - spin.x);
-        Self { spin, couple, rate: couple.abs().max_element() }
+        Self { spin, couple }
+    }
+
+    /// Whether u stays where it is: about a principal axis the body turns evenly, for ever.
+    fn stands(&self, u: DVec3) -> bool {
+        self.couple * DVec3::new(u.y * u.z, u.z * u.x, u.x * u.y) == DVec3::ZERO
     }
 
     /// One piece of time `t`: its turn, and u at its end.
@@ -157,32 +172,35 @@ impl Euler {
         self.couple * sum
     }
 
-    /// The time after which u comes back; `None` where it does not turn, or never comes back.
-    ///
     /// With s_a ≤ s_b ≤ s_c and D_ij = s_j − s_i, u_b is an elliptic sine of λ t, on the side of a with
     /// λ² = D_ab (D_ac u_a² + D_bc u_b²) and λ² k'² = D_ac (D_ab u_a² − D_bc u_c²), so that
     /// T = 4 K(k)/λ = 2π/agm(λ, λ k').
-    fn period(&self, u: DVec3) -> Option<f64> {
+    fn pace(&self, u: DVec3) -> Pace {
         let mut order = [0, 1, 2];
         order.sort_by(|&i, &j| self.spin[i].total_cmp(&self.spin[j]));
         let [a, b, c] = order;
-        let ab = self.spin[b] - self.spin[a];
-        let bc = self.spin[c] - self.spin[b];
         let ac = self.spin[c] - self.spin[a];
+        if ac == 0.0 {
+            return Pace { rate: 0.0, period: f64::INFINITY };
+        }
+        // in units of D_ac, whose square may overflow
+        let ab = (self.spin[b] - self.spin[a]) / ac;
+        let bc = (self.spin[c] - self.spin[b]) / ac;
         // which side of the separatrix: u circles axis a where this is above 0, else axis c
         let side = ab * u[a] * u[a] - bc * u[c] * u[c];
         let (near, of_near, of_far) = if side > 0.0 { (u[a], ab, bc) } else { (u[c], bc, ab) };
-        let lambda = (of_near * (ac * near * near + of_far * u[b] * u[b])).sqrt();
-        let mean = arithmetic_geometric_mean(lambda, (ac * side.abs()).sqrt());
-        (mean > 0.0).then(|| std::f64::consts::TAU / mean)
+        let lambda = (of_near * (near * near + of_far * u[b] * u[b])).sqrt();
+        // on the separatrix itself any rounding brings u back, after a long time
+        let mean = arithmetic_geometric_mean(lambda, side.abs().max(NEAREST).sqrt());
+        Pace { rate: ac * lambda, period: std::f64::consts::TAU / (ac * mean) }
     }
 
     /// How far the body turns about L in one period (rad).
-    fn angle_of_period(&self, start: DVec3, period: f64) -> f64 {
-        let pieces = (self.rate * period / PIECE).ceil().max(1.0);
+    fn angle_of_period(&self, start: DVec3, pace: &Pace) -> f64 {
+        let pieces = (pace.rate * pace.period / PIECE).ceil().max(1.0);
         let (mut u, mut turn) = (start, Turn::NONE);
         for _ in 0..pieces as u64 {
-            let (piece, end) = self.piece(u, period / pieces);
+            let (piece, end) = self.piece(u, pace.period / pieces);
             turn = turn.after(piece);
             u = end;
         }

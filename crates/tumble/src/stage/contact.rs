@@ -193,10 +193,10 @@ impl Touch<'_> {
         let limit = law.friction * normal;
         let pull = law.friction_spring * stretch.length();
         if pull > limit {
-            let before = stretch.length_squared();
+            // the work of the force that slips, along the way that the anchor slips
+            self.forces.slip += limit * (pull - limit) / law.friction_spring;
             stretch *= limit / pull;
             anchor = here - stretch;
-            self.forces.slip += 0.5 * law.friction_spring * (before - stretch.length_squared());
         }
         let hold = stretch * -law.friction_spring;
         let brake = within(hold, tangential(u, n) * -law.friction_damping, limit);

@@ -1,0 +1,107 @@
+//! `tumble verify`: the physics against theory.
+
+use clap::Args;
+use tumble_io::scene::nearest;
+use tumble_verify::{CASES, Case, Check};
+
+use crate::table::short;
+use crate::{Failure, print};
+
+#[derive(Args)]
+pub struct VerifyArgs {
+    /// Only these cases, by name
+    #[arg(value_name = "CASE")]
+    cases: Vec<String>,
+    /// As a page in Markdown
+    #[arg(long)]
+    markdown: bool,
+}
+
+pub fn verify(args: &VerifyArgs) -> Result<(), Failure> {
+    let mut failed = 0;
+    if args.markdown {
+        print(HEADER)?;
+    }
+    for case in chosen(&args.cases)? {
+        match (case.run)() {
+            Ok(checks) => {
+                failed += checks.iter().filter(|check| !check.passed()).count();
+                print(&if args.markdown { markdown(case, &checks) } else { text(case, &checks) })?;
+            }
+            Err(error) => {
+                failed += 1;
+                print(&format!("{}: FAILED: {error}\n", case.name))?;
+            }
+        }
+    }
+    if failed == 0 {
+        return Ok(());
+    }
+    Err(Failure::Run(format!("error: {failed} numbers are not what theory says")))
+}
+
+fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
+    if names.is_empty() {
+        return Ok(CASES.iter().collect());
+    }
+    let known: Vec<&str> = CASES.iter().map(|case| case.name).collect();
+    names
+        .iter()
+        .map(|name| {
+            CASES.iter().find(|case| case.name == name).ok_or_else(|| {
+                let help = match nearest(name, &known) {
+                    Some(near) => format!("did you mean \"{near}\"?"),
+                    None => format!("there are: {}", known.join(", ")),
+                };
+                Failure::Call(format!("error: there is no case \"{name}\"; {help}"))
+            })
+        })
+        .collect()
+}
+
+/// One row a number: quantity, expected, measured, bound, verdict, remark.
+fn row(check: &Check) -> [String; 6] {
+    let unit = if check.unit.is_empty() { String::new() } else { format!(" {}", check.unit) };
+    [
+        check.quantity.clone(),
+        format!("{}{unit}", short(check.expected)),
+        format!("{}{unit}", short(check.measured)),
+        format!("±{}", short(check.bound)),
+        if check.passed() { "ok".to_owned() } else { "FAILED".to_owned() },
+        check.remark.clone(),
+    ]
+}
+
+fn text(case: &Case, checks: &[Check]) -> String {
+    let rows: Vec<_> = checks.iter().map(row).collect();
+    let width =
+        |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<_> = (0..5).map(width).collect();
+    let mut out = format!("{}: {}\n", case.name, case.about);
+    for row in &rows {
+        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}"));
+        let line = format!("  {}  {}", cells.collect::<Vec<_>>().join("  "), row[5]);
+        out.push_str(line.trim_end());
+        out.push('\n');
+    }
+    out.push('\n');
+    out
+}
+
+const HEADER: &str = "# Validation
+
+The physics against theory: made by `tumble verify --markdown > docs/validation.md`.
+
+";
+
+fn markdown(case: &Case, checks: &[Check]) -> String {
+    let mut out = format!("## {}\n\n{}\n\n", case.name, case.about);
+    out.push_str(
+        "| quantity | expected | measured | bound | verdict | |\n|---|---|---|---|---|---|\n",
+    );
+    for check in checks {
+        out.push_str(&format!("| {} |\n", row(check).join(" | ")));
+    }
+    out.push('\n');
+    out
+}

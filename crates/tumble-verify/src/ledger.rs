@@ -1,0 +1,42 @@
+//! The account of every joule on every built-in scene.
+
+use tumble::Integrator;
+use tumble_io::scene::{BUILTIN, LoadOptions, load_builtin};
+
+use crate::check::{Case, Check, Outcome};
+
+pub(crate) const SCENES: Case = Case {
+    name: "ledger",
+    about: "every built-in scene that runs with the default integrator: kinetic, gravitational and elastic energy and \
+            all losses add up",
+    run: scenes,
+    slow: true,
+};
+
+fn scenes() -> Outcome {
+    let mut checks = Vec::new();
+    for scene in BUILTIN {
+        let Some(loaded) = load_builtin(scene.name, &LoadOptions::default()) else { continue };
+        let loaded = loaded?;
+        if loaded.scene.integrator != Integrator::Splitting {
+            continue;
+        }
+        let (steps, mut world) = (loaded.scene.step_count(), loaded.world);
+        let start = world.energy();
+        let (mut worst, mut in_play) = (0.0f64, start.kinetic + start.elastic);
+        while world.state().step < steps {
+            world.step()?;
+            let energy = world.energy();
+            worst = worst.max((energy.total() - start.total()).abs());
+            in_play = in_play.max(energy.kinetic + energy.elastic);
+        }
+        let relative = worst / in_play;
+        checks.push(Check::error(
+            format!("residual of {}, relative", scene.name),
+            relative,
+            1e-3,
+            "",
+        ));
+    }
+    Ok(checks)
+}
