@@ -223,8 +223,17 @@ fn a_run_of_no_time_has_its_first_frame() {
 #[test]
 fn a_motion_that_diverges_is_status_1_without_a_summary() {
     let desk = Desk::new();
-    let said =
-        desk.tumble(&["run", "task1", "--set", "dt=0.5", "--set", "duration=100", "--out", "o"]);
+    let said = desk.tumble(&[
+        "run",
+        "task1",
+        "--set",
+        "dt=0.5",
+        "--set",
+        "duration=100",
+        "--force",
+        "--out",
+        "o",
+    ]);
     let said = said.ends_with(1);
     says(&said.err, &["error: ", "diverged", "t = ", "dt"]);
     assert!(!desk.path("o/summary.json").exists());

@@ -91,9 +91,10 @@ impl State {
             let values = [
                 ("position", state.position.is_finite()),
                 ("velocity", state.velocity.is_finite()),
-                ("orientation", (q.length_squared() - 1.0).abs() < 1e-3),
+                ("orientation", (q.length() - 1.0).abs() <= 1e-6),
                 ("orientation_rest", state.orientation_rest.is_finite()),
                 ("angular_momentum", state.angular_momentum.is_finite()),
+                ("energy_owed", state.energy_owed.is_finite()),
             ];
             possible(&body.name, &values)?;
         }

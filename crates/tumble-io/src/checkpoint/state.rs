@@ -1,38 +1,48 @@
 //! The state as bytes: step, time, number of bodies; position, velocity, orientation (w, x, y, z),
-//! its rest and angular momentum of each; number of friction springs of each, and wall, particle
+//! its rest, angular momentum and energy owed of each; number of friction springs of each, and wall, particle
 //! and anchor of each spring; the tally.
 
 use tumble::{BodyState, DQuat, DVec3, FrictionSpring, State, Tally};
 
 use super::Bytes;
 
-const BODY: usize = 17 * 8;
+const BODY: usize = 18 * 8;
 const SPRING: usize = 4 + 4 + 3 * 8;
 
 pub(super) fn bytes(state: &State) -> Vec<u8> {
-    let springs: usize = state.springs.iter().map(Vec::len).sum();
-    let size = 64 + state.bodies.len() * (BODY + 8) + springs * SPRING;
-    let mut out = Vec::with_capacity(size);
-    out.extend(state.step.to_le_bytes());
-    put(&mut out, [state.time]);
-    out.extend((state.bodies.len() as u64).to_le_bytes());
-    for body in &state.bodies {
-        put(&mut out, body.position.to_array());
-        put(&mut out, body.velocity.to_array());
-        for q in [body.orientation, body.orientation_rest] {
+    // taken apart to the last field: one that is added later cannot be forgotten here
+    let State { step, time, bodies, springs, tally } = state;
+    let spring_count: usize = springs.iter().map(Vec::len).sum();
+    let mut out = Vec::with_capacity(64 + bodies.len() * (BODY + 8) + spring_count * SPRING);
+    out.extend(step.to_le_bytes());
+    put(&mut out, [*time]);
+    out.extend((bodies.len() as u64).to_le_bytes());
+    for body in bodies {
+        let BodyState {
+            position,
+            velocity,
+            orientation,
+            orientation_rest,
+            angular_momentum,
+            energy_owed,
+        } = body;
+        put(&mut out, position.to_array());
+        put(&mut out, velocity.to_array());
+        for q in [orientation, orientation_rest] {
             put(&mut out, [q.w, q.x, q.y, q.z]);
         }
-        put(&mut out, body.angular_momentum.to_array());
+        put(&mut out, angular_momentum.to_array());
+        put(&mut out, [*energy_owed]);
     }
-    for springs in &state.springs {
+    for springs in springs {
         out.extend((springs.len() as u64).to_le_bytes());
-        for spring in springs {
-            out.extend(spring.wall.to_le_bytes());
-            out.extend(spring.particle.to_le_bytes());
-            put(&mut out, spring.anchor.to_array());
+        for FrictionSpring { wall, particle, anchor } in springs {
+            out.extend(wall.to_le_bytes());
+            out.extend(particle.to_le_bytes());
+            put(&mut out, anchor.to_array());
         }
     }
-    let Tally { drag, dashpot, slip, max_depth, evaluations } = state.tally;
+    let Tally { drag, dashpot, slip, max_depth, evaluations } = *tally;
     put(&mut out, [drag, dashpot, slip, max_depth]);
     out.extend(evaluations.to_le_bytes());
     out
@@ -65,6 +75,7 @@ fn body(from: &mut Bytes) -> Option<BodyState> {
         orientation: quaternion(from)?,
         orientation_rest: quaternion(from)?,
         angular_momentum: vector(from)?,
+        energy_owed: from.f64()?,
     })
 }
 
