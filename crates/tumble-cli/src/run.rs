@@ -133,10 +133,15 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
     } else {
         String::new()
     };
+    let steps = if finished.steps_here == s.steps {
+        count(s.steps)
+    } else {
+        format!("{}, the last {}", count(s.steps), count(finished.steps_here))
+    };
     let rows = [
         ("scene", format!("{}, {} bodies, {} particles", s.scene, s.bodies, count(s.particles))),
         ("integrator", format!("{}, dt = {} s", s.integrator, short(s.dt))),
-        ("steps", format!("{} in {} s", count(s.steps), short(s.wall_seconds))),
+        ("steps", format!("{steps} in {} s", short(s.wall_seconds))),
         ("speed", format!("{} steps/s", count(s.steps_per_second as u64))),
         (
             "time",

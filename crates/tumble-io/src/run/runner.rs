@@ -31,6 +31,8 @@ pub struct Finished {
     pub summary: Summary,
     /// The ledger at its end.
     pub energy: EnergyRow,
+    /// Steps taken since it was last resumed.
+    pub steps_here: u64,
 }
 
 /// Runs a scene to its end and writes everything into `folder`.
@@ -85,12 +87,12 @@ impl<'a> Run<'a> {
         }
         self.recording.checkpoint(&self.scene, self.world.state())?;
         let energy = self.recording.finish(&self.scene, &self.world)?;
-        let steps = self.world.state().step - self.first;
-        let summary = summarise(&self.scene, &self.world, (steps, self.clock), &energy);
+        let steps_here = self.world.state().step - self.first;
+        let summary = summarise(&self.scene, &self.world, (steps_here, self.clock), &energy);
         let mut json = serde_json::to_string_pretty(&summary).unwrap_or_default();
         json.push('\n');
         folder.write("summary.json", json.as_bytes())?;
-        Ok(Finished { summary, energy })
+        Ok(Finished { summary, energy, steps_here })
     }
 
     fn go(&mut self, watch: &mut dyn FnMut(Progress) -> bool) -> Result<(), RunError> {
