@@ -138,9 +138,12 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
     } else {
         format!("{}, the last {}", count(s.steps), count(finished.steps_here))
     };
+    let critical = s.critical_dt.map_or(String::new(), |critical| {
+        format!(", {} of the critical {} s", short(s.dt / critical), short(critical))
+    });
     let rows = [
         ("scene", format!("{}, {} bodies, {} particles", s.scene, s.bodies, count(s.particles))),
-        ("integrator", format!("{}, dt = {} s", s.integrator, short(s.dt))),
+        ("integrator", format!("{}, dt = {} s{critical}", s.integrator, short(s.dt))),
         ("steps", format!("{steps} in {} s", short(s.wall_seconds))),
         ("speed", format!("{} steps/s", count(s.steps_per_second as u64))),
         (

@@ -203,6 +203,7 @@ impl WorldBuilder {
             integrator: self.integrator,
             energy_tolerance: self.energy_tolerance,
             walls: self.walls.iter().map(|(wall, _)| *wall).collect(),
+            gap: smallest_gap(&self.walls),
             bodies: Vec::with_capacity(self.bodies.len()),
         };
         let mut state = State::default();
@@ -302,6 +303,13 @@ impl WorldBuilder {
             contacts,
         })
     }
+}
+
+/// The smallest distance between two walls that face each other with room between them (m).
+fn smallest_gap(walls: &[(WallPlane, MaterialOverride)]) -> Option<f64> {
+    let pairs = walls.iter().flat_map(|(a, _)| walls.iter().map(move |(b, _)| (a, b)));
+    let facing = pairs.filter(|(a, b)| a.normal.dot(b.normal) < -1.0 + 1e-9);
+    facing.map(|(a, b)| -(a.offset + b.offset)).filter(|&gap| gap > 0.0).min_by(f64::total_cmp)
 }
 
 fn check_material(

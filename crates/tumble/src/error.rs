@@ -101,20 +101,36 @@ pub struct StepError {
     pub time: f64,
     /// Name of the body.
     pub body: String,
-    /// What is wrong: a field of [`BodyState`](crate::BodyState).
+    /// The particle that it is about, if it is one.
+    pub particle: Option<usize>,
+    /// What is wrong: a field of [`BodyState`](crate::BodyState), the `depth` of a contact (m), or the
+    /// `displacement` of a particle in one step (m).
     pub quantity: &'static str,
     /// Its value.
     pub value: f64,
+    /// A step (s) that would do, where one can be named.
+    pub dt: Option<f64>,
 }
 
 impl std::fmt::Display for StepError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { step, time, body, quantity, value } = self;
+        let Self { step, time, body, particle, quantity, value, dt } = self;
+        let whose = match particle {
+            Some(particle) => format!("particle {particle} of body \"{body}\""),
+            None => format!("body \"{body}\""),
+        };
         write!(
             f,
-            "the simulation diverged at step {step} (t = {time} s): {quantity} of body \"{body}\" \
-             is {value}; try a smaller `dt` or a smaller `collision_stiffness`"
-        )
+            "the simulation diverged at step {step} (t = {time} s): {quantity} of {whose} is {value}"
+        )?;
+        match dt {
+            Some(dt) => write!(
+                f,
+                " m, more than half the way to the opposite wall; try --set dt={dt:.1e} or a larger \
+                 `collision_stiffness`"
+            ),
+            None => write!(f, "; try a smaller `dt` or a smaller `collision_stiffness`"),
+        }
     }
 }
 

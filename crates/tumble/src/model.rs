@@ -46,6 +46,8 @@ pub struct Model {
     pub energy_tolerance: Option<f64>,
     /// The walls; none is free space.
     pub walls: Vec<WallPlane>,
+    /// The smallest distance between two walls that face each other (m).
+    pub gap: Option<f64>,
     /// One entry a body.
     pub bodies: Vec<BodyModel>,
 }

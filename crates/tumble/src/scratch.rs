@@ -7,6 +7,8 @@ use crate::FrictionSpring;
 /// Room for what is derived within a step. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
+    /// Which bodies may touch a wall within the step.
+    pub near: Vec<bool>,
     /// Forces and torques of the latest evaluation, one entry a body.
     pub forces: Vec<BodyForces>,
     /// The friction springs that go on from this evaluation, one list a body.
@@ -21,6 +23,7 @@ impl Scratch {
         self.forces.clear();
         self.forces.resize(body_count, BodyForces::default());
         self.springs.resize_with(body_count, Vec::new);
+        self.near.resize(body_count, true);
     }
 }
 

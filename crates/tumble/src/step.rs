@@ -14,13 +14,17 @@ pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(
     scratch.clear(model.bodies.len());
     match (model.integrator, model.energy_tolerance) {
         (Integrator::Splitting, None) => {
-            stage::fly(model, state, 0.5 * h);
+            stage::reach(model, state, scratch, h);
+            stage::cruise(model, state, scratch, h);
+            stage::fly(model, state, scratch, 0.5 * h);
             stage::contact(model, state, scratch, h);
             stage::kick(model, state, scratch, h);
-            stage::fly(model, state, 0.5 * h);
+            stage::fly(model, state, scratch, 0.5 * h);
         }
         (Integrator::Splitting, Some(tolerance)) => {
-            stage::refine(model, state, scratch, tolerance); // the same, in parts
+            stage::reach(model, state, scratch, h);
+            stage::cruise(model, state, scratch, h);
+            stage::refine(model, state, scratch, tolerance); // the rest of the above, in parts
         }
         (Integrator::Euler, _) => {
             stage::gravity(model, scratch); // 2
@@ -31,5 +35,5 @@ pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(
     }
     state.step += 1;
     state.time = state.step as f64 * model.dt;
-    stage::check(model, state)
+    stage::check(model, state, scratch)
 }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use tumble::{State, World};
+use tumble::{State, World, critical_dt};
 
 use super::folder::{RunError, RunFolder};
 use super::recording::Recording;
@@ -196,6 +196,8 @@ fn summarise(
         energy_start: energy.total - energy.residual,
         energy_end: energy.total,
         energy_residual: energy.residual,
+        critical_dt: critical_dt(world.model()).map(|critical| critical.dt),
+        force_evaluations: world.state().tally.evaluations,
         max_depth: world.state().tally.max_depth,
         state_hash: world.state().hash(),
     }

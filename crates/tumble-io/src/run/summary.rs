@@ -35,6 +35,11 @@ pub struct Summary {
     pub energy_end: f64,
     /// Their difference: the integrator's error (J).
     pub energy_residual: f64,
+    /// The longest step with which contact is stable (s); absent where nothing can touch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub critical_dt: Option<f64>,
+    /// How often contact forces kicked a body.
+    pub force_evaluations: u64,
     /// Deepest contact (m).
     pub max_depth: f64,
     /// Hash of the last state.

@@ -1,28 +1,48 @@
 //! The last stage of every step: is the state still one that physics could have made?
 
-use crate::{BodyState, Model, State, StepError};
+use glam::DMat3;
 
-/// Refuses a state with a number that is NaN or infinite, or an orientation that is no rotation.
+use crate::{BodyModel, BodyState, Model, Scratch, State, StepError};
+
+/// Refuses a state with a number that is NaN or infinite, a particle that has come more than half way from
+/// one wall to the wall that faces it, and a step that moves a particle that far: both could have
+/// passed through.
 ///
 /// # Errors
-/// [`StepError`] names the step, time, body, quantity and value.
-pub fn check(model: &Model, state: &State) -> Result<(), StepError> {
-    for (body, body_state) in model.bodies.iter().zip(&state.bodies) {
-        if let Some((quantity, value)) = impossible(body_state) {
+/// [`StepError`] names the step, time, body, particle, quantity and value, and a step that would do.
+pub fn check(model: &Model, state: &State, scratch: &Scratch) -> Result<(), StepError> {
+    for (index, body) in model.bodies.iter().enumerate() {
+        let body_state = &state.bodies[index];
+        let problem = not_finite(body_state).or_else(|| {
+            let limit = 0.5 * model.gap?;
+            too_deep(model, body, body_state, scratch.forces[index].max_depth, limit)
+                .or_else(|| too_far(model, body, body_state, limit))
+        });
+        if let Some(Problem { quantity, value, particle, limit }) = problem {
             return Err(StepError {
                 step: state.step,
                 time: state.time,
                 body: body.name.clone(),
+                particle,
                 quantity,
                 value,
+                // a quarter of the limit leaves room for the motion to go on
+                dt: limit.map(|limit| 0.25 * model.dt * limit / value),
             });
         }
     }
     Ok(())
 }
 
-/// The first quantity that cannot be, and its value.
-fn impossible(state: &BodyState) -> Option<(&'static str, f64)> {
+struct Problem {
+    quantity: &'static str,
+    value: f64,
+    particle: Option<usize>,
+    limit: Option<f64>,
+}
+
+/// The first quantity that is not finite, and its value.
+fn not_finite(state: &BodyState) -> Option<Problem> {
     let [qx, qy, qz, qw] = state.orientation.to_array();
     let quantities: [(&str, &[f64]); 4] = [
         ("position", &state.position.to_array()),
@@ -30,10 +50,53 @@ fn impossible(state: &BodyState) -> Option<(&'static str, f64)> {
         ("orientation", &[qw, qx, qy, qz]),
         ("angular_momentum", &state.angular_momentum.to_array()),
     ];
-    let not_finite = quantities.iter().find_map(|(name, values)| {
-        values.iter().find(|v| !v.is_finite()).map(|&value| (*name, value))
-    });
-    // an angular velocity whose square overflows leaves no orientation at all
-    let length = state.orientation.length();
-    not_finite.or(((length - 1.0).abs() > 1e-6).then_some(("length of orientation", length)))
+    quantities.iter().find_map(|(quantity, values)| {
+        let value = *values.iter().find(|v| !v.is_finite())?;
+        Some(Problem { quantity, value, particle: None, limit: None })
+    })
+}
+
+/// A contact deeper than `limit` (m), with its particle.
+fn too_deep(
+    model: &Model,
+    body: &BodyModel,
+    state: &BodyState,
+    depth: f64,
+    limit: f64,
+) -> Option<Problem> {
+    if depth <= limit {
+        return None;
+    }
+    let deepest = |index: usize| {
+        let (place, _) = body.particle(state, index);
+        model.walls.iter().map(|wall| wall.depth(place)).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let particle =
+        (0..body.shape.particles().len()).max_by(|&a, &b| deepest(a).total_cmp(&deepest(b)));
+    Some(Problem { quantity: "depth", value: depth, particle, limit: Some(limit) })
+}
+
+/// A particle that moves farther than `limit` (m) in a step.
+fn too_far(model: &Model, body: &BodyModel, state: &BodyState, limit: f64) -> Option<Problem> {
+    // |ω| is at most |L| over the smallest moment: most bodies need no closer look
+    let fastest = body.inverse_moments.max_element() * state.angular_momentum.length();
+    let way = |omega: f64| model.dt * (state.velocity.length() + omega * body.shape.radius());
+    if way(fastest) <= limit {
+        return None;
+    }
+    let omega =
+        body.angular_velocity(DMat3::from_quat(state.orientation), state.angular_momentum).length();
+    if way(omega) <= limit {
+        return None;
+    }
+    let speed = |index: usize| body.particle(state, index).1.length();
+    let particle =
+        (0..body.shape.particles().len()).max_by(|&a, &b| speed(a).total_cmp(&speed(b)))?;
+    let value = model.dt * speed(particle);
+    (value > limit).then_some(Problem {
+        quantity: "displacement",
+        value,
+        particle: Some(particle),
+        limit: Some(limit),
+    })
 }

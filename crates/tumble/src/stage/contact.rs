@@ -18,6 +18,9 @@ use crate::{
 /// velocities before and after. With h = 0 they feel the velocities as they are.
 pub fn contact(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     for (index, body) in model.bodies.iter().enumerate() {
+        if !scratch.near[index] {
+            continue;
+        }
         let room = (&mut scratch.forces[index], &mut scratch.springs[index]);
         contact_body(model, body, &state.bodies[index], &state.springs[index], room, h);
     }

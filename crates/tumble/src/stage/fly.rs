@@ -3,12 +3,23 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::flight::{Glide, Turn, free_rotation};
-use crate::{BodyModel, BodyState, Model, State};
+use crate::{BodyModel, BodyState, Model, Scratch, State};
 
-/// Lets every body fly for the time `h` (s).
-pub fn fly(model: &Model, state: &mut State, h: f64) {
-    for (body, body_state) in model.bodies.iter().zip(&mut state.bodies) {
-        state.tally.drag += fly_body(model, body, body_state, h);
+/// Lets the bodies that cannot touch a wall fly the whole time `h` (s) at once.
+pub fn cruise(model: &Model, state: &mut State, scratch: &Scratch, h: f64) {
+    fly_those(model, state, scratch, h, false);
+}
+
+/// Lets the bodies that may touch a wall fly for the time `h` (s).
+pub fn fly(model: &Model, state: &mut State, scratch: &Scratch, h: f64) {
+    fly_those(model, state, scratch, h, true);
+}
+
+fn fly_those(model: &Model, state: &mut State, scratch: &Scratch, h: f64, near: bool) {
+    for (index, body) in model.bodies.iter().enumerate() {
+        if scratch.near[index] == near {
+            state.tally.drag += fly_body(model, body, &mut state.bodies[index], h);
+        }
     }
 }
 

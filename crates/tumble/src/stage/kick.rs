@@ -6,6 +6,9 @@ use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally};
 /// v ← v + F h/M, L ← L + τ h, with the contact forces of [`contact`](super::contact) over the time `h` (s).
 pub fn kick(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     for (index, body) in model.bodies.iter().enumerate() {
+        if !scratch.near[index] {
+            continue;
+        }
         let forces = &scratch.forces[index];
         state.tally += kick_body(body, &mut state.bodies[index], forces, h);
         std::mem::swap(&mut state.springs[index], &mut scratch.springs[index]);

@@ -7,6 +7,7 @@ mod euler;
 mod fly;
 mod gravity;
 mod kick;
+mod reach;
 mod refine;
 
 pub use check::check;
@@ -14,7 +15,8 @@ pub(crate) use contact::Placed;
 pub use contact::contact;
 pub use drag::drag;
 pub use euler::euler;
-pub use fly::fly;
+pub use fly::{cruise, fly};
 pub use gravity::gravity;
 pub use kick::kick;
+pub use reach::reach;
 pub use refine::refine;

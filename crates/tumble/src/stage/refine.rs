@@ -35,10 +35,13 @@ const W3: f64 = -0.706_246_172_557_639_359_81;
 const W4: f64 = 0.082_213_596_293_550_800_23;
 const W5: f64 = 0.798_543_990_934_829_963_40;
 
-/// Advances every body by one step, with what a part of it leaves unaccounted for below
+/// Advances every body that may touch a wall by one step, with what a part of it leaves unaccounted for below
 /// `tolerance` of the energy in play.
 pub fn refine(model: &Model, state: &mut State, scratch: &mut Scratch, tolerance: f64) {
     for (index, body) in model.bodies.iter().enumerate() {
+        if !scratch.near[index] {
+            continue;
+        }
         let mut mover = Mover {
             model,
             body,
@@ -48,11 +51,7 @@ pub fn refine(model: &Model, state: &mut State, scratch: &mut Scratch, tolerance
             next: &mut scratch.springs[index],
             impulse: Wrench::default(),
         };
-        state.tally += if mover.stays_clear() {
-            mover.fly(model.dt)
-        } else {
-            mover.in_parts(&mut scratch.backup, tolerance)
-        };
+        state.tally += mover.in_parts(&mut scratch.backup, tolerance);
     }
 }
 
@@ -88,15 +87,6 @@ impl Account {
 }
 
 impl Mover<'_> {
-    /// Whether no wall can be reached within a step.
-    fn stays_clear(&self) -> bool {
-        let h = self.model.dt;
-        let way = h * (self.state.velocity.length() + h * self.model.gravity.length());
-        let reach = way + self.body.shape.radius();
-        let clear = |wall: &crate::WallPlane| wall.depth(self.state.position) + reach < 0.0;
-        self.springs.is_empty() && self.model.walls.iter().all(clear)
-    }
-
     fn in_parts(&mut self, backup: &mut Vec<FrictionSpring>, tolerance: f64) -> Tally {
         let mut lost = Tally::default();
         let mut start = self.account();
