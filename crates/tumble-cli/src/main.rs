@@ -1,6 +1,7 @@
 //! The `tumble` command: rigid bodies made of particles, from a scene to its results.
 
 mod info;
+mod resume;
 mod run;
 mod scenes;
 mod table;
@@ -25,7 +26,7 @@ enum Failure {
 #[derive(Parser)]
 #[command(name = "tumble", version, about = "Simulates rigid bodies made of particles")]
 #[command(
-    after_help = "Exit status: 0 done, 1 the simulation failed, 2 wrong call, scene or mesh, \
+    after_help = "Exit status: 0 done, 1 the simulation failed, 2 wrong call, scene, mesh or checkpoint, \
                         130 stopped by Ctrl-C"
 )]
 struct Cli {
@@ -37,6 +38,8 @@ struct Cli {
 enum Command {
     /// Simulate a scene and write its results into a folder
     Run(run::RunArgs),
+    /// Go on with a run from its checkpoint, to the same bits as if it had never stopped
+    Resume(resume::ResumeArgs),
     /// List the built-in scenes, or print one to start from
     Scenes(scenes::ScenesArgs),
     /// Show what a mesh is: particles, mass, centre, principal moments, watertight or not
@@ -50,6 +53,7 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match cli.command {
         Command::Run(args) => run::run(&args),
+        Command::Resume(args) => resume::resume(&args),
         Command::Scenes(args) => scenes::scenes(&args),
         Command::Info(args) => info::info(&args),
         Command::Verify(args) => verify::verify(&args),

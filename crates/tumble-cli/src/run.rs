@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use tumble_io::run::{Finished, Progress, RunError, RunFolder};
-use tumble_io::scene::{LoadOptions, Loaded, load_builtin, load_file};
+use tumble_io::scene::{LoadOptions, Loaded, SceneError, load_builtin, load_file};
 
 use crate::scenes::unknown_scene;
 use crate::table::{count, short, table};
@@ -43,15 +43,23 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         None => RunFolder::create_next(Path::new("out"), &name),
     }
     .map_err(|error| failure(&error))?;
+    carry_out(&folder, |watch| tumble_io::run::run(loaded, &folder, watch))
+}
+
+/// Runs with a progress bar until the end or Ctrl-C, and reports.
+pub fn carry_out(
+    folder: &RunFolder,
+    run: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<Finished, RunError>,
+) -> Result<(), Failure> {
     let stop = stop_on_ctrl_c();
     let bar = progress_bar();
-    let finished = tumble_io::run::run(loaded, &folder, &mut |progress| {
+    let finished = run(&mut |progress| {
         show(&bar, progress);
         !stop.load(Ordering::Relaxed)
     });
     bar.finish_and_clear();
     let finished = finished.map_err(|error| failure(&error))?;
-    print(&report(&finished, &folder))?;
+    print(&report(&finished, folder))?;
     if finished.summary.interrupted { Err(Failure::Interrupted) } else { Ok(()) }
 }
 
@@ -66,18 +74,19 @@ fn load(args: &RunArgs) -> Result<Loaded, Failure> {
         None if path.exists() => load_file(path, &options),
         None => return Err(Failure::Call(unknown_scene(&args.scene))),
     };
-    loaded.map_err(|error| {
-        let count = error.problem_count();
-        let total = if count > 1 {
-            format!("\n\n{count} problems; nothing was run")
-        } else {
-            String::new()
-        };
-        Failure::Call(format!("{}{total}", error.render(colour())))
-    })
+    loaded.map_err(|error| bad_scene(&error))
 }
 
-fn failure(error: &RunError) -> Failure {
+/// All that is wrong with a scene.
+pub fn bad_scene(error: &SceneError) -> Failure {
+    let count = error.problem_count();
+    let total =
+        if count > 1 { format!("\n\n{count} problems; nothing was run") } else { String::new() };
+    Failure::Call(format!("{}{total}", error.render(colour())))
+}
+
+/// What a failed run ends the command with.
+pub fn failure(error: &RunError) -> Failure {
     let message = format!("error: {error}");
     match error {
         RunError::Taken(_) | RunError::NotARun(_) => Failure::Call(message),
@@ -124,13 +133,18 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
     } else {
         String::new()
     };
+    let steps = if finished.steps_here == s.steps {
+        count(s.steps)
+    } else {
+        format!("{}, the last {}", count(s.steps), count(finished.steps_here))
+    };
     let critical = s.critical_dt.map_or(String::new(), |critical| {
         format!(", {} of the critical {} s", short(s.dt / critical), short(critical))
     });
     let rows = [
         ("scene", format!("{}, {} bodies, {} particles", s.scene, s.bodies, count(s.particles))),
         ("integrator", format!("{}, dt = {} s{critical}", s.integrator, short(s.dt))),
-        ("steps", format!("{} in {} s", count(s.steps), short(s.wall_seconds))),
+        ("steps", format!("{steps} in {} s", short(s.wall_seconds))),
         ("speed", format!("{} steps/s", count(s.steps_per_second as u64))),
         (
             "time",

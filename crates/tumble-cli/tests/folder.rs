@@ -116,6 +116,7 @@ fn ctrl_c_leaves_a_complete_folder() {
         assert_eq!(
             desk.files("o"),
             [
+                "checkpoint.tumble",
                 "energy.csv",
                 "energy.svg",
                 "motion.png",

@@ -29,7 +29,15 @@ fn the_folder_holds_what_the_contract_says() {
     let summary = desk.run(&["task2", "--duration", "0.1"], "o");
     assert_eq!(
         desk.files("o"),
-        ["energy.csv", "energy.svg", "motion.png", "scene.toml", "summary.json", "trajectory.csv"]
+        [
+            "checkpoint.tumble",
+            "energy.csv",
+            "energy.svg",
+            "motion.png",
+            "scene.toml",
+            "summary.json",
+            "trajectory.csv"
+        ]
     );
     let keys = [
         "version",
@@ -215,8 +223,17 @@ fn a_run_of_no_time_has_its_first_frame() {
 #[test]
 fn a_motion_that_diverges_is_status_1_without_a_summary() {
     let desk = Desk::new();
-    let said =
-        desk.tumble(&["run", "task1", "--set", "dt=0.5", "--set", "duration=100", "--out", "o"]);
+    let said = desk.tumble(&[
+        "run",
+        "task1",
+        "--set",
+        "dt=0.5",
+        "--set",
+        "duration=100",
+        "--force",
+        "--out",
+        "o",
+    ]);
     let said = said.ends_with(1);
     says(&said.err, &["error: ", "diverged", "t = ", "dt"]);
     assert!(!desk.path("o/summary.json").exists());

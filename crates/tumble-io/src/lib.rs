@@ -1,5 +1,6 @@
 //! Scenes, meshes, recordings, plots and pictures for [`tumble`].
 
+pub mod checkpoint;
 pub mod mesh;
 pub mod picture;
 pub mod plot;

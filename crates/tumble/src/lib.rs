@@ -41,6 +41,7 @@ mod flight;
 mod hash;
 mod material;
 mod model;
+mod restore;
 mod scratch;
 mod shape;
 mod stability;
@@ -57,6 +58,7 @@ pub use flight::DragModes;
 pub use glam::{DMat3, DQuat, DVec3};
 pub use material::{ContactLaw, Damping, Material, MaterialOverride, damping_ratio, restitution};
 pub use model::{BodyModel, Integrator, Model};
+pub use restore::StateError;
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{
     Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties, Mesh, MeshError,

@@ -3,7 +3,8 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
-    BodyModel, BodyState, Energy, Model, Scratch, State, StepError, WorldBuilder, step::step,
+    BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError, WorldBuilder,
+    step::step,
 };
 
 /// A model and its state, and the means to advance it.
@@ -30,6 +31,22 @@ impl World {
     /// [`StepError`] when the new state cannot be trusted; the world then keeps it, for inspection.
     pub fn step(&mut self) -> Result<(), StepError> {
         step(&self.model, &mut self.state, &mut self.scratch)
+    }
+
+    /// Goes on from `state`, as a checkpoint holds it: every step from here on gives the bits that it
+    /// gave when the state was taken.
+    ///
+    /// # Errors
+    /// [`StateError`] when the state is not one of this model; the world then keeps its own.
+    pub fn restore(&mut self, state: State) -> Result<(), StateError> {
+        state.fits(&self.model)?;
+        self.state = state;
+        Ok(())
+    }
+
+    /// Drops everything that the next step would compute anew. No result changes.
+    pub fn forget_scratch(&mut self) {
+        self.scratch = Scratch::default();
     }
 
     /// Time t (s).

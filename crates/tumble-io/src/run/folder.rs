@@ -1,7 +1,7 @@
 //! The folder of a run: made once, never written over by accident.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use tumble::StepError;
@@ -9,11 +9,17 @@ use tumble::StepError;
 use crate::scene::{HEADER, Scene};
 
 /// The files that a run writes. Nothing else in the folder is ever touched.
-const FILES: [&str; 6] =
-    [SCENE, "trajectory.csv", "energy.csv", "summary.json", "energy.svg", "motion.png"];
+pub(super) const FILES: [&str; 7] =
+    [SCENE, TRAJECTORY, LEDGER, "summary.json", "energy.svg", "motion.png", CHECKPOINT];
 
 /// The file that shows a folder to be taken.
-const SCENE: &str = "scene.toml";
+pub(super) const SCENE: &str = "scene.toml";
+/// One row a body a frame.
+pub(super) const TRAJECTORY: &str = "trajectory.csv";
+/// One row a frame.
+pub(super) const LEDGER: &str = "energy.csv";
+/// What a run goes on from.
+pub const CHECKPOINT: &str = "checkpoint.tumble";
 
 /// Why a run cannot start or go on.
 #[derive(Debug)]
@@ -110,6 +116,20 @@ impl RunFolder {
         }
     }
 
+    /// The folder at `path`, whose run is to go on.
+    pub fn existing(path: &Path) -> Self {
+        let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
+        Self { path: path.to_owned() }
+    }
+
+    /// Whether both are one folder.
+    pub fn is(&self, path: &Path) -> bool {
+        match (self.path.canonicalize(), path.canonicalize()) {
+            (Ok(own), Ok(other)) => own == other,
+            _ => false,
+        }
+    }
+
     /// Removes a file of an old run; but a `scene.toml` only if a run wrote it.
     fn remove(&self, name: &str) -> Result<(), RunError> {
         let path = self.file(name);
@@ -128,6 +148,17 @@ impl RunFolder {
             // best effort: the first error is the one to tell
             let _ = fs::remove_file(self.file(SCENE));
         })
+    }
+
+    /// Takes back that the run in it is whole.
+    pub(super) fn unfinish(&self) -> Result<(), RunError> {
+        let path = self.file("summary.json");
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(RunError::Write(path, error))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Makes the first of `parent/name`, `parent/name-2`, `parent/name-3`, … that holds no run.
@@ -165,6 +196,19 @@ impl RunFolder {
     pub(super) fn open(&self, name: &str) -> Result<BufWriter<File>, RunError> {
         let path = self.file(name);
         let file = File::create(&path).map_err(|error| RunError::Write(path, error))?;
+        Ok(BufWriter::with_capacity(1 << 16, file))
+    }
+
+    /// Opens one of its files to go on writing after its first `length` bytes; the rest is cut off.
+    pub(super) fn reopen(&self, name: &str, length: u64) -> Result<BufWriter<File>, RunError> {
+        let path = self.file(name);
+        let open = || {
+            let mut file = OpenOptions::new().write(true).open(&path)?;
+            file.set_len(length)?;
+            file.seek(SeekFrom::Start(length))?;
+            Ok(file)
+        };
+        let file = open().map_err(|error| RunError::Write(path.clone(), error))?;
         Ok(BufWriter::with_capacity(1 << 16, file))
     }
 

@@ -1,15 +1,20 @@
 //! A run: step a world, keep what it did, and write it all into one folder.
 
+mod drawing;
 mod folder;
+mod history;
 mod ledger;
 mod recorder;
+mod recording;
+mod resume;
 mod runner;
 mod summary;
 mod trajectory;
 
-pub use folder::{RunError, RunFolder};
+pub use folder::{CHECKPOINT, RunError, RunFolder};
 pub use ledger::{LEDGER_HEADER, ledger_row};
 pub use recorder::Recorder;
+pub use resume::{ResumeError, Resumption};
 pub use runner::{Finished, Progress, run};
 pub use summary::Summary;
 pub use trajectory::{TRAJECTORY_HEADER, write_frame};

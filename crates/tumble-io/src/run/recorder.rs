@@ -30,7 +30,11 @@ impl Recorder {
             .bodies()
             .map(|body| Pose { position: body.position(), orientation: body.orientation() })
             .collect();
-        let frame = Frame { time: world.time(), poses };
+        self.record_frame(Frame { time: world.time(), poses }, row);
+    }
+
+    /// Remembers a frame, as it was recorded.
+    pub fn record_frame(&mut self, frame: Frame, row: EnergyRow) {
         if self.seen.is_multiple_of(self.stride) {
             if self.frames.len() == self.most {
                 self.stride *= 2;

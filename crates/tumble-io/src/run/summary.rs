@@ -25,9 +25,9 @@ pub struct Summary {
     pub bodies: usize,
     /// How many particles, over all bodies.
     pub particles: u64,
-    /// Time spent in stepping alone (s).
+    /// Time spent in stepping alone (s), since the run was last resumed.
     pub wall_seconds: f64,
-    /// Steps a second of `wall_seconds`.
+    /// Steps of that time, a second.
     pub steps_per_second: f64,
     /// Total energy at the start (J).
     pub energy_start: f64,

@@ -133,11 +133,13 @@ pub struct Copies {
 pub struct OutputScene {
     /// Time between frames (s).
     pub interval: f64,
+    /// Simulated time between checkpoints (s), on top of those that the clock asks for.
+    pub checkpoint_interval: Option<f64>,
 }
 
 impl Default for OutputScene {
     fn default() -> Self {
-        Self { interval: 1.0 / 60.0 }
+        Self { interval: 1.0 / 60.0, checkpoint_interval: None }
     }
 }
 
@@ -149,20 +151,39 @@ impl Scene {
 
     /// The first step after `step` that has a frame.
     pub fn next_frame(&self, step: u64) -> u64 {
-        let steps_a_frame = self.output.interval / self.dt;
-        // frames closer to each other than steps: one on every step
-        if steps_a_frame <= 1.0 {
+        self.next_of(self.output.interval, step)
+    }
+
+    /// Whether `step` has a frame.
+    pub fn is_frame(&self, step: u64) -> bool {
+        step == 0 || self.next_frame(step - 1) == step
+    }
+
+    /// The first step after `step` that has a checkpoint, if the scene asks for any.
+    pub fn next_checkpoint(&self, step: u64) -> Option<u64> {
+        self.output.checkpoint_interval.map(|interval| self.next_of(interval, step))
+    }
+
+    /// The first step after `step` that is nearest to a multiple of `interval`.
+    fn next_of(&self, interval: f64, step: u64) -> u64 {
+        let steps_each = interval / self.dt;
+        // closer to each other than steps: every step
+        if steps_each <= 1.0 {
             return step + 1;
         }
-        let mut frame = ((step as f64 / steps_a_frame) as u64).saturating_sub(1);
-        while self.frame_step(frame) <= step {
-            frame += 1;
+        let mut number = ((step as f64 / steps_each) as u64).saturating_sub(1);
+        while self.step_of(interval, number) <= step {
+            number += 1;
         }
-        self.frame_step(frame)
+        self.step_of(interval, number)
     }
 
     /// The step of frame number `frame`: the one nearest to its time.
     pub fn frame_step(&self, frame: u64) -> u64 {
-        (frame as f64 * self.output.interval / self.dt).round() as u64
+        self.step_of(self.output.interval, frame)
+    }
+
+    fn step_of(&self, interval: f64, number: u64) -> u64 {
+        (number as f64 * interval / self.dt).round() as u64
     }
 }

@@ -173,6 +173,7 @@ fn wall(reader: Reader) -> Option<WallScene> {
 fn output(reader: Reader) -> OutputScene {
     let default = OutputScene::default();
     let interval = reader.number("interval", Range::Positive).unwrap_or(default.interval);
+    let checkpoint_interval = reader.number("checkpoint_interval", Range::Positive);
     reader.finish();
-    OutputScene { interval }
+    OutputScene { interval, checkpoint_interval }
 }

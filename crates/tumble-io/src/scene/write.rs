@@ -31,6 +31,9 @@ impl Scene {
         put(&mut top, "output", {
             let mut output = Table::new();
             put(&mut output, "interval", self.output.interval);
+            if let Some(interval) = self.output.checkpoint_interval {
+                put(&mut output, "checkpoint_interval", interval);
+            }
             output
         });
         if let Some(own) = &self.walls_of_box {

@@ -1,0 +1,244 @@
+//! `checkpoint.tumble`: all that a run needs to go on to the same bits.
+//!
+//! | bytes | hold |
+//! |---|---|
+//! | 12 | [`MAGIC`] |
+//! | 4 | version of the format, [`VERSION`] |
+//! | 8 | length of the whole file |
+//! | | four sections, each: a name of 4 letters, its length (8 bytes), its bytes |
+//! | 32 | SHA-256 of everything before |
+//!
+//! The sections, in this order: `NAME`, the scene's name; `SCEN`, the scene as TOML; `HOW `, a byte that
+//! is 1 where the run was forced, and the energy at the start (J); `STAT`, the state. All numbers
+//! are little-endian, doubles as their bits. Every version, also one to come, ends with the
+//! SHA-256 of what is before, so that a file of a later version can be told from a damaged one.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use sha2::{Digest, Sha256};
+use tumble::State;
+
+mod state;
+
+/// How every checkpoint begins: bytes that a transfer as text would change.
+pub const MAGIC: [u8; 12] = *b"\x89TUMBLE\r\n\x1a\n\0";
+/// The version of the format that is written.
+pub const VERSION: u32 = 1;
+/// Bytes before the first section.
+const HEAD: usize = 12 + 4 + 8;
+/// Bytes after the last section.
+const SUM: usize = 32;
+/// A file larger than this is something else.
+const MOST_BYTES: u64 = 4 << 30;
+
+/// All that a run needs to go on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// The scene's name.
+    pub name: String,
+    /// The scene as run, as TOML, meshes by full path and hash.
+    pub scene: String,
+    /// Whether a step above the critical one was accepted.
+    pub force: bool,
+    /// Total energy at the start of the run (J).
+    pub energy_start: f64,
+    /// All that has evolved.
+    pub state: State,
+}
+
+/// Why there is no checkpoint in a file; the words go on after the file's name.
+#[derive(Debug)]
+pub enum CheckpointError {
+    /// It cannot be read.
+    Read(io::Error),
+    /// It is no ordinary file, or far too large.
+    NoFile,
+    /// There is nothing in it.
+    Empty,
+    /// It is something else.
+    Foreign,
+    /// Its end is missing.
+    Short {
+        /// Bytes that are there.
+        found: u64,
+    },
+    /// Some of its bytes are not those that were written.
+    Damaged,
+    /// A later version of the program wrote it.
+    Version(u32),
+    /// It is whole, but what it says makes no sense: here.
+    Nonsense(&'static str),
+}
+
+impl std::fmt::Display for CheckpointError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Read(error) => write!(f, "cannot be read: {error}"),
+            Self::NoFile => write!(f, "is no ordinary file of at most {} GiB", MOST_BYTES >> 30),
+            Self::Empty => write!(f, "is empty"),
+            Self::Foreign => write!(f, "is no checkpoint: it begins with other bytes"),
+            Self::Short { found } => {
+                write!(f, "is cut short: only its first {found} bytes are there")
+            }
+            Self::Damaged => write!(f, "is damaged: its checksum does not match its bytes"),
+            Self::Version(version) => write!(
+                f,
+                "is of format version {version}, but this program reads version {VERSION}: \
+                 resume it with the program that wrote it"
+            ),
+            Self::Nonsense(part) => write!(f, "is no checkpoint of a run: {part} makes no sense"),
+        }
+    }
+}
+
+impl std::error::Error for CheckpointError {}
+
+impl Checkpoint {
+    /// The bytes of the file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let Self { name, scene, force, energy_start, state } = self;
+        encode((name, scene), (*force, *energy_start), state)
+    }
+}
+
+/// The bytes of a checkpoint, from borrowed parts.
+pub(crate) fn encode(
+    (name, scene): (&str, &str),
+    (force, energy_start): (bool, f64),
+    state: &State,
+) -> Vec<u8> {
+    let mut how = vec![u8::from(force)];
+    how.extend(energy_start.to_le_bytes());
+    let state = state::bytes(state);
+    let sections: [(&[u8; 4], &[u8]); 4] = [
+        (b"NAME", name.as_bytes()),
+        (b"SCEN", scene.as_bytes()),
+        (b"HOW ", &how),
+        (b"STAT", &state),
+    ];
+    let length = HEAD + SUM + sections.iter().map(|(_, bytes)| 12 + bytes.len()).sum::<usize>();
+    let mut all = Vec::with_capacity(length);
+    all.extend(MAGIC);
+    all.extend(VERSION.to_le_bytes());
+    all.extend((length as u64).to_le_bytes());
+    for (section, bytes) in sections {
+        all.extend(section);
+        all.extend((bytes.len() as u64).to_le_bytes());
+        all.extend(bytes);
+    }
+    let sum = Sha256::digest(&all);
+    all.extend(sum);
+    all
+}
+
+/// Reads the checkpoint in the file at `path`.
+///
+/// # Errors
+/// [`CheckpointError`].
+pub fn read_checkpoint(path: &Path) -> Result<Checkpoint, CheckpointError> {
+    let metadata = std::fs::metadata(path).map_err(CheckpointError::Read)?;
+    if !metadata.is_file() || metadata.len() > MOST_BYTES {
+        return Err(CheckpointError::NoFile);
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(CheckpointError::Read)?;
+    // a file that grows meanwhile is not read for ever
+    file.take(MOST_BYTES).read_to_end(&mut bytes).map_err(CheckpointError::Read)?;
+    parse_checkpoint(&bytes)
+}
+
+/// Reads a checkpoint from bytes of any origin. Takes no more memory than a few times their number.
+///
+/// # Errors
+/// [`CheckpointError`] for everything but a whole checkpoint.
+pub fn parse_checkpoint(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
+    let found = bytes.len() as u64;
+    if bytes.is_empty() {
+        return Err(CheckpointError::Empty);
+    }
+    if !bytes.starts_with(&MAGIC[..bytes.len().min(MAGIC.len())]) {
+        return Err(CheckpointError::Foreign);
+    }
+    let short = CheckpointError::Short { found };
+    if bytes.len() < HEAD + SUM {
+        return Err(short);
+    }
+    let (body, sum) = bytes.split_at(bytes.len() - SUM);
+    let whole = Sha256::digest(body).as_slice() == sum;
+    let mut rest = Bytes(&body[MAGIC.len()..]);
+    let head = rest.u32().zip(rest.u64());
+    let (version, length) = head.ok_or(CheckpointError::Damaged)?;
+    if !whole {
+        return Err(if length > found { short } else { CheckpointError::Damaged });
+    }
+    if version != VERSION {
+        return Err(CheckpointError::Version(version));
+    }
+    if length != found {
+        return Err(CheckpointError::Nonsense("its length"));
+    }
+    let name = rest.section(b"NAME").and_then(text);
+    let name = name.ok_or(CheckpointError::Nonsense("the scene's name"))?;
+    let scene = rest.section(b"SCEN").and_then(text);
+    let scene = scene.ok_or(CheckpointError::Nonsense("the scene"))?;
+    let how = rest.section(b"HOW ").and_then(|mut how| {
+        let (force, energy) = (how.take(1)?[0], how.f64()?);
+        (force <= 1 && energy.is_finite() && how.is_empty()).then_some((force == 1, energy))
+    });
+    let (force, energy_start) = how.ok_or(CheckpointError::Nonsense("the energy at the start"))?;
+    let state = rest.section(b"STAT").and_then(state::parse).filter(|_| rest.is_empty());
+    let state = state.ok_or(CheckpointError::Nonsense("the state"))?;
+    Ok(Checkpoint { name, scene, force, energy_start, state })
+}
+
+fn text(bytes: Bytes) -> Option<String> {
+    String::from_utf8(bytes.0.to_vec()).ok()
+}
+
+/// Bytes that are still to be read; nothing is taken that is not there.
+#[derive(Clone, Copy)]
+struct Bytes<'a>(&'a [u8]);
+
+impl<'a> Bytes<'a> {
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.0.split_at_checked(count)?;
+        self.0 = rest;
+        Some(taken)
+    }
+
+    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        self.take(N)?.try_into().ok()
+    }
+
+    fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    fn u64(&mut self) -> Option<u64> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    fn f64(&mut self) -> Option<f64> {
+        self.array().map(f64::from_le_bytes)
+    }
+
+    fn section(&mut self, name: &[u8; 4]) -> Option<Bytes<'a>> {
+        if self.take(4)? != name {
+            return None;
+        }
+        let length = usize::try_from(self.u64()?).ok()?;
+        self.take(length).map(Bytes)
+    }
+
+    /// How many items of `size` bytes follow, if there is room for so many.
+    fn count(&mut self, size: usize) -> Option<usize> {
+        let count = usize::try_from(self.u64()?).ok()?;
+        (count <= self.0.len() / size).then_some(count)
+    }
+}

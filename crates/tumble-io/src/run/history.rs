@@ -1,0 +1,167 @@
+//! The rows that a run has already written, read back so that it can go on after them.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::PathBuf;
+
+use tumble::{DQuat, DVec3, World};
+
+use super::folder::{LEDGER, RunFolder, TRAJECTORY};
+use super::ledger::LEDGER_HEADER;
+use super::recorder::Recorder;
+use super::resume::ResumeError;
+use super::trajectory::TRAJECTORY_HEADER;
+use crate::picture::{Frame, Pose};
+use crate::plot::EnergyRow;
+use crate::scene::Scene;
+
+/// A longer row is none.
+const LONGEST: u64 = 1 << 13;
+
+/// The rows of a run up to a moment.
+#[derive(Debug)]
+pub(super) struct History {
+    /// Bytes of `trajectory.csv` up to there.
+    pub trajectory: u64,
+    /// Bytes of `energy.csv` up to there.
+    pub ledger: u64,
+    /// What the pictures need of it.
+    pub recorder: Recorder,
+}
+
+impl History {
+    /// Reads the frames up to the state of `world`; `None` if there are no such files. What comes
+    /// after, and a last row that is cut short, does not matter.
+    pub fn read(
+        folder: &RunFolder,
+        scene: &Scene,
+        world: &World,
+    ) -> Result<Option<Self>, ResumeError> {
+        let is_there = |name| folder.file(name).symlink_metadata().is_ok();
+        if !is_there(TRAJECTORY) && !is_there(LEDGER) {
+            return Ok(None);
+        }
+        let mut trajectory = Rows::open(folder, TRAJECTORY, TRAJECTORY_HEADER)?;
+        let mut ledger = Rows::open(folder, LEDGER, LEDGER_HEADER)?;
+        let mut recorder = Recorder::new(world.body_count());
+        let last = world.state().step;
+        let mut row = ledger.next()?.map(|row| ledger_row(&row)).transpose();
+        // a run that lost its first rows begins with a later frame
+        let first = match row {
+            Ok(Some(row)) => (row.time / scene.dt).round() as u64,
+            _ => scene.next_frame(last),
+        };
+        let is_frame =
+            if first > last { first == scene.next_frame(last) } else { scene.is_frame(first) };
+        if !is_frame {
+            return Err(ledger.wrong("has a first row of a time without a frame"));
+        }
+        let mut step = first;
+        while step <= last {
+            let time = step as f64 * scene.dt;
+            let next = match row {
+                Ok(Some(row)) if row.time == time => row,
+                Ok(None) => return Err(ledger.wrong(&format!("has no row of t = {time} s"))),
+                _ => {
+                    return Err(ledger.wrong(&format!("has another row than that of t = {time} s")));
+                }
+            };
+            let poses = poses(&mut trajectory, world, time)?;
+            recorder.record_frame(Frame { time, poses }, next);
+            step = scene.next_frame(step);
+            if step <= last {
+                row = ledger.next()?.map(|row| ledger_row(&row)).transpose();
+            }
+        }
+        // of a first frame that is still to come, the row was read but is not kept
+        let ledger = if first > last { ledger.header } else { ledger.at };
+        Ok(Some(Self { trajectory: trajectory.at, ledger, recorder }))
+    }
+}
+
+/// The rows of one frame of `trajectory.csv`, one a body.
+fn poses(rows: &mut Rows, world: &World, time: f64) -> Result<Vec<Pose>, ResumeError> {
+    let mut poses = Vec::with_capacity(world.body_count());
+    for body in world.bodies() {
+        let name = body.name();
+        let missing = format!("has no row of \"{name}\" at t = {time} s");
+        let row = rows.next()?.ok_or_else(|| rows.wrong(&missing))?;
+        let pose = pose(&row, time, name);
+        poses.push(pose.ok_or_else(|| {
+            rows.wrong(&format!("has another row than that of \"{name}\" at t = {time} s"))
+        })?);
+    }
+    Ok(poses)
+}
+
+fn pose(row: &str, time: f64, name: &str) -> Option<Pose> {
+    let (of, rest) = row.split_once(',')?;
+    let (body, rest) = rest.split_once(',')?;
+    if of.parse::<f64>().ok()? != time || body != name {
+        return None;
+    }
+    let [px, py, pz, w, x, y, z, ..] = numbers::<16>(rest)?;
+    Some(Pose { position: DVec3::new(px, py, pz), orientation: DQuat::from_xyzw(x, y, z, w) })
+}
+
+fn ledger_row(row: &str) -> Result<EnergyRow, ()> {
+    let [time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual] =
+        numbers::<9>(row).ok_or(())?;
+    let row =
+        EnergyRow { time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual };
+    Ok(row)
+}
+
+/// Exactly `N` numbers.
+fn numbers<const N: usize>(row: &str) -> Option<[f64; N]> {
+    let mut numbers = [0.0; N];
+    let mut fields = row.split(',');
+    for number in &mut numbers {
+        *number = fields.next()?.parse().ok()?;
+    }
+    fields.next().is_none().then_some(numbers)
+}
+
+/// The rows of a CSV file, one by one.
+struct Rows {
+    path: PathBuf,
+    from: BufReader<File>,
+    /// Bytes of the header.
+    header: u64,
+    /// Bytes read so far.
+    at: u64,
+}
+
+impl Rows {
+    fn open(folder: &RunFolder, name: &str, header: &str) -> Result<Self, ResumeError> {
+        let path = folder.file(name);
+        let file = File::open(&path)
+            .map_err(|error| ResumeError::Rows(path.clone(), format!("cannot be read: {error}")))?;
+        let mut rows = Self { path, from: BufReader::new(file), header: 0, at: 0 };
+        if rows.next()?.as_deref() != Some(header) {
+            return Err(rows.wrong("does not begin with its header"));
+        }
+        rows.header = rows.at;
+        Ok(rows)
+    }
+
+    /// The next row that is whole.
+    fn next(&mut self) -> Result<Option<String>, ResumeError> {
+        let mut row = Vec::new();
+        let read = self.from.by_ref().take(LONGEST).read_until(b'\n', &mut row);
+        let read = read.map_err(|error| self.wrong(&format!("cannot be read: {error}")))?;
+        if row.pop() != Some(b'\n') {
+            let torn = (read as u64) < LONGEST;
+            return if torn { Ok(None) } else { Err(self.wrong("has a row without an end")) };
+        }
+        self.at += read as u64;
+        match String::from_utf8(row) {
+            Ok(row) => Ok(Some(row)),
+            Err(_) => Err(self.wrong("has a row that is no text")),
+        }
+    }
+
+    fn wrong(&self, what: &str) -> ResumeError {
+        ResumeError::Rows(self.path.clone(), what.to_owned())
+    }
+}

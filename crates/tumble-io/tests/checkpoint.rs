@@ -1,0 +1,165 @@
+//! `checkpoint.tumble`: what was written is read to the bit, and nothing else is taken for it.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::sync::OnceLock;
+
+use proptest::prelude::*;
+use sha2::{Digest, Sha256};
+use tumble_io::checkpoint::{
+    Checkpoint, CheckpointError, MAGIC, VERSION, parse_checkpoint, read_checkpoint,
+};
+use tumble_io::scene::{LoadOptions, Loaded, Source, load_text};
+
+const SCENE: &str = "dt = 2e-4\n\
+    collision = { restitution = 0.6, friction_stiffness = 0.5 }\n\
+    wall = [{ normal = [0.2, 1.0, 0.0] }]\n\
+    [[body]]\nshape = \"box\"\ndivisions = 2\nsize = [0.3, 0.2, 0.2]\nposition = [0, 0.2, 0]\n\
+    initial_velocity = [1, -1, 0.2]\ninitial_angular_velocity = [1, 2, 3]\n";
+
+fn load(text: &str) -> Loaded {
+    let source = Source { name: "s.toml".to_owned(), text: text.to_owned() };
+    load_text("s", source, Path::new("."), &LoadOptions::default()).unwrap()
+}
+
+/// A checkpoint in the middle of contact with friction.
+fn checkpoint() -> &'static Checkpoint {
+    static MADE: OnceLock<Checkpoint> = OnceLock::new();
+    MADE.get_or_init(|| {
+        let Loaded { scene, mut world } = load(SCENE);
+        let energy_start = world.energy().total();
+        while world.state().springs[0].len() < 3 || world.state().step < 2000 {
+            world.step().unwrap();
+        }
+        Checkpoint {
+            name: "s".to_owned(),
+            scene: scene.to_toml(),
+            force: true,
+            energy_start,
+            state: world.state().clone(),
+        }
+    })
+}
+
+/// The same bytes with a checksum that is right.
+fn sign(mut bytes: Vec<u8>) -> Vec<u8> {
+    let body = bytes.len() - 32;
+    let sum = Sha256::digest(&bytes[..body]);
+    bytes[body..].copy_from_slice(&sum);
+    bytes
+}
+
+#[test]
+fn a_checkpoint_is_read_as_it_was_written() {
+    let written = checkpoint();
+    let bytes = written.to_bytes();
+    let read = parse_checkpoint(&bytes).unwrap();
+    assert_eq!(read.state.hash(), written.state.hash());
+    assert_eq!(&read, written);
+    assert_eq!(read.to_bytes(), bytes);
+    assert_ne!(read.state.bodies[0].orientation_rest.length(), 0.0, "the rest counts, too");
+}
+
+#[test]
+fn a_world_goes_on_from_a_checkpoint_to_the_same_bits() {
+    let mut whole = load(SCENE).world;
+    let read = parse_checkpoint(&checkpoint().to_bytes()).unwrap();
+    let mut resumed = load(&read.scene).world;
+    resumed.restore(read.state).unwrap();
+    while resumed.state().step < 4000 {
+        resumed.step().unwrap();
+    }
+    while whole.state().step < 4000 {
+        whole.step().unwrap();
+    }
+    assert_eq!(whole.state().hash(), resumed.state().hash());
+}
+
+#[test]
+fn the_sign_of_zero_and_the_smallest_numbers_survive() {
+    let mut odd = checkpoint().clone();
+    odd.state.bodies[0].position.x = -0.0;
+    odd.state.bodies[0].velocity.y = f64::from_bits(1);
+    odd.state.tally.evaluations = u64::MAX;
+    let read = parse_checkpoint(&odd.to_bytes()).unwrap();
+    assert_eq!(read.to_bytes(), odd.to_bytes());
+    assert!(read.state.bodies[0].position.x.is_sign_negative());
+}
+
+#[test]
+fn every_shorter_file_is_cut_short() {
+    let bytes = checkpoint().to_bytes();
+    for length in 1..bytes.len() {
+        let error = parse_checkpoint(&bytes[..length]).unwrap_err();
+        assert!(matches!(error, CheckpointError::Short { .. }), "{length}: {error}");
+    }
+    let longer = [bytes.as_slice(), b"x"].concat();
+    assert!(matches!(parse_checkpoint(&longer), Err(CheckpointError::Damaged)));
+    assert!(matches!(parse_checkpoint(b""), Err(CheckpointError::Empty)));
+}
+
+#[test]
+fn other_files_are_told_by_what_they_are() {
+    let says = |bytes: &[u8], part: &str| {
+        let error = parse_checkpoint(bytes).unwrap_err().to_string();
+        assert!(error.contains(part), "{error}");
+    };
+    says(b"duration = 3.0\n", "is no checkpoint: it begins with other bytes");
+    says(b"\x89PNG\r\n\x1a\n", "begins with other bytes");
+    says(&[0; 1000], "begins with other bytes");
+    let mut later = checkpoint().to_bytes();
+    later[MAGIC.len()..][..4].copy_from_slice(&(VERSION + 6).to_le_bytes());
+    says(&later, "damaged");
+    says(&sign(later), "format version 7, but this program reads version 1");
+    let folder = tempfile::tempdir().unwrap();
+    assert!(matches!(read_checkpoint(folder.path()), Err(CheckpointError::NoFile)));
+    let missing = read_checkpoint(&folder.path().join("no")).unwrap_err();
+    assert!(missing.to_string().starts_with("cannot be read: "));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 400, ..Default::default() })]
+
+    #[test]
+    fn a_single_wrong_bit_is_noticed(at in any::<prop::sample::Index>(), bit in 0..8u32) {
+        let mut bytes = checkpoint().to_bytes();
+        let at = at.index(bytes.len());
+        bytes[at] ^= 1 << bit;
+        prop_assert!(parse_checkpoint(&bytes).is_err());
+    }
+
+    /// Somebody who makes up a checkpoint gets the checksum right, and still no panic and no more
+    /// memory than the file has bytes.
+    #[test]
+    fn made_up_bytes_do_no_harm(
+        edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        cut in 0..200usize,
+    ) {
+        let mut bytes = checkpoint().to_bytes();
+        // lengths and counts lie at the beginning and in the state: both halves get their share
+        for (at, value) in edits {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        bytes.truncate(bytes.len() - cut);
+        if let Ok(read) = parse_checkpoint(&sign(bytes)) {
+            let mut world = load(SCENE).world;
+            if world.restore(read.state).is_ok() {
+                let _ = world.step();
+                let _ = world.energy();
+            }
+        }
+    }
+
+    #[test]
+    fn random_bytes_do_no_harm(tail in prop::collection::vec(any::<u8>(), 0..300)) {
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend(&tail);
+        let _ = parse_checkpoint(&bytes);
+        if tail.len() >= 32 {
+            let _ = parse_checkpoint(&sign(bytes));
+        }
+    }
+}
