@@ -1,6 +1,6 @@
 //! The state as bytes: step, time, number of bodies; position, velocity, orientation (w, x, y, z),
 //! its rest, angular momentum and energy owed of each; number of friction springs of each, and wall, particle
-//! and anchor of each spring; the tally.
+//! anchor and stretch of each spring; the tally.
 
 use tumble::{BodyState, DQuat, DVec3, FrictionSpring, State, Tally};
 
@@ -36,10 +36,11 @@ pub(super) fn bytes(state: &State) -> Vec<u8> {
     }
     for springs in springs {
         out.extend((springs.len() as u64).to_le_bytes());
-        for FrictionSpring { wall, particle, anchor } in springs {
+        for FrictionSpring { wall, particle, anchor, stretch } in springs {
             out.extend(wall.to_le_bytes());
             out.extend(particle.to_le_bytes());
             put(&mut out, anchor.to_array());
+            put(&mut out, stretch.to_array());
         }
     }
     let Tally { drag, dashpot, slip, max_depth, evaluations } = *tally;
@@ -83,7 +84,7 @@ fn springs(from: &mut Bytes) -> Option<Vec<FrictionSpring>> {
     let count = from.count(SPRING)?;
     let spring = |_| {
         let (wall, particle) = (from.u32()?, from.u32()?);
-        Some(FrictionSpring { wall, particle, anchor: vector(from)? })
+        Some(FrictionSpring { wall, particle, anchor: vector(from)?, stretch: vector(from)? })
     };
     (0..count).map(spring).collect()
 }
