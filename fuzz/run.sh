@@ -9,7 +9,7 @@ cd "$(dirname "$0")"
 seconds=${1:-20}
 shift || true
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(scene obj stl ply gltf)
+[ ${#targets[@]} -gt 0 ] || targets=(scene obj stl ply gltf checkpoint)
 
 if ! cargo +nightly --version >/dev/null 2>&1; then
     echo "fuzz: skipped, no nightly toolchain (rustup toolchain install nightly)"
