@@ -133,7 +133,9 @@ fn fitting_springs(body: &BodyModel, springs: &[FrictionSpring]) -> Result<(), S
                 particle: key.1,
             });
         }
-        possible(&body.name, &[("anchor", spring.anchor.is_finite())])?;
+        let springs =
+            [("anchor", spring.anchor.is_finite()), ("stretch", spring.stretch.is_finite())];
+        possible(&body.name, &springs)?;
         before = Some(key);
     }
     Ok(())

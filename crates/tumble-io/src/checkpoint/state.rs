@@ -7,7 +7,7 @@ use tumble::{BodyState, DQuat, DVec3, FrictionSpring, State, Tally};
 use super::Bytes;
 
 const BODY: usize = 18 * 8;
-const SPRING: usize = 4 + 4 + 3 * 8;
+const SPRING: usize = 4 + 4 + 6 * 8;
 
 pub(super) fn bytes(state: &State) -> Vec<u8> {
     // taken apart to the last field: one that is added later cannot be forgotten here

@@ -29,11 +29,11 @@ const COMPOSED: u32 = 4;
 const MOST_CORRECTION: f64 = 0.5;
 /// Weights of the nine leaps.
 const WEIGHTS: [f64; 9] = [W1, W2, W3, W4, W5, W4, W3, W2, W1];
-const W1: f64 = 0.392_161_444_007_314_139_28;
-const W2: f64 = 0.332_599_136_789_359_438_60;
-const W3: f64 = -0.706_246_172_557_639_359_81;
-const W4: f64 = 0.082_213_596_293_550_800_23;
-const W5: f64 = 0.798_543_990_934_829_963_40;
+const W1: f64 = 0.392_161_444_007_314_1;
+const W2: f64 = 0.332_599_136_789_359_43;
+const W3: f64 = -0.706_246_172_557_639_3;
+const W4: f64 = 0.082_213_596_293_550_8;
+const W5: f64 = 0.798_543_990_934_83;
 
 /// Advances every body that may touch a wall by one step, with what a part of it leaves unaccounted for below
 /// `tolerance` of the energy in play.
@@ -139,7 +139,7 @@ impl Mover<'_> {
             return false;
         }
         let epsilon = 2.0 * energy / (slope + root.sqrt().copysign(slope));
-        if !(epsilon.abs() <= MOST_CORRECTION) {
+        if epsilon.is_nan() || epsilon.abs() > MOST_CORRECTION {
             return false;
         }
         self.state.velocity += push * (epsilon / self.body.mass);
