@@ -28,4 +28,10 @@ for scene in $(target/release/tumble scenes | awk '{ print $1 }'); do
     target/release/tumble run "$scene" --out "$out/$scene"
 done
 
+say "physics against theory"
+target/release/tumble verify
+
+say "hostile input: a bounded run of every fuzz target"
+fuzz/run.sh 10
+
 say "all checks passed"

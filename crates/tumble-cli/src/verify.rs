@@ -59,13 +59,14 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
         .collect()
 }
 
-/// One row a number: quantity, expected, measured, bound, verdict, remark.
-fn row(check: &Check) -> [String; 6] {
+/// One row a number: quantity, expected, measured, how far off, bound, verdict, remark.
+fn row(check: &Check) -> [String; 7] {
     let unit = if check.unit.is_empty() { String::new() } else { format!(" {}", check.unit) };
     [
         check.quantity.clone(),
         format!("{}{unit}", short(check.expected)),
         format!("{}{unit}", short(check.measured)),
+        short(check.measured - check.expected),
         format!("±{}", short(check.bound)),
         if check.passed() { "ok".to_owned() } else { "FAILED".to_owned() },
         check.remark.clone(),
@@ -76,11 +77,11 @@ fn text(case: &Case, checks: &[Check]) -> String {
     let rows: Vec<_> = checks.iter().map(row).collect();
     let width =
         |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<_> = (0..5).map(width).collect();
+    let widths: Vec<_> = (0..6).map(width).collect();
     let mut out = format!("{}: {}\n", case.name, case.about);
     for row in &rows {
         let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}"));
-        let line = format!("  {}  {}", cells.collect::<Vec<_>>().join("  "), row[5]);
+        let line = format!("  {}  {}", cells.collect::<Vec<_>>().join("  "), row[6]);
         out.push_str(line.trim_end());
         out.push('\n');
     }
@@ -90,17 +91,18 @@ fn text(case: &Case, checks: &[Check]) -> String {
 
 const HEADER: &str = "# Validation
 
-The physics against theory: made by `tumble verify --markdown > docs/validation.md`.
+The physics against theory: made by `docs/make.sh`, the tables by `tumble verify --markdown`.
 
 ";
 
 fn markdown(case: &Case, checks: &[Check]) -> String {
     let mut out = format!("## {}\n\n{}\n\n", case.name, case.about);
     out.push_str(
-        "| quantity | expected | measured | bound | verdict | |\n|---|---|---|---|---|---|\n",
+        "| quantity | expected | measured | off by | bound | verdict | |\n|---|---|---|---|---|---|---|\n",
     );
     for check in checks {
-        out.push_str(&format!("| {} |\n", row(check).join(" | ")));
+        let cells = row(check).map(|cell| cell.replace('|', "\\|"));
+        out.push_str(&format!("| {} |\n", cells.join(" | ")));
     }
     out.push('\n');
     out

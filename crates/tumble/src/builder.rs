@@ -249,6 +249,10 @@ impl WorldBuilder {
         if let Some(tolerance) = self.energy_tolerance {
             let ok = tolerance > 0.0 && tolerance < 1.0;
             check("energy_tolerance", ok, &tolerance, "above 0 and below 1");
+            let refines = self.integrator == Integrator::Splitting;
+            let allowed =
+                "left out with the integrator \"euler\": only \"splitting\" refines its steps";
+            check("energy_tolerance", refines, &tolerance, allowed);
         }
     }
 

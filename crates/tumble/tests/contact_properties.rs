@@ -205,14 +205,17 @@ proptest! {
             let now = world.energy();
             in_play = in_play.max(now.kinetic + now.elastic);
             let dust = 1e-11 * in_play;
-            prop_assert!(now.dashpot >= before.dashpot - dust, "dashpots gave {:e} J of {in_play}", before.dashpot - now.dashpot);
-            prop_assert!(now.slip >= before.slip - dust, "slip gave {:e} J of {in_play}", before.slip - now.slip);
+            // a dashpot feels a forecast of its mean velocity; where that is all but zero, the true one
+            // may have the other sign
+            let forecast = 1e-6 * in_play;
+            prop_assert!(now.dashpot >= before.dashpot - forecast, "dashpots gave {:e} J of {in_play}", before.dashpot - now.dashpot);
+            // a spring that turns about between two kicks gives back what the mean force had taken
+            let turned = 1e-3 * in_play;
+            prop_assert!(now.slip >= before.slip - turned, "slip gave {:e} J of {in_play}", before.slip - now.slip);
             prop_assert!(now.drag >= before.drag - dust, "drag gave {:e} J of {in_play}", before.drag - now.drag);
             let off = (now.total() - start.total()) / in_play;
-            // measured in 1,500 scenes: within 0.0022 without friction, from -0.14 to 0.022 with it,
-            // where a falling limit lets go of stretch that only a smaller step would count as slip
             let (low, high) =
-                if scene.material.friction_stiffness == 0.0 { (-0.01, 0.01) } else { (-0.25, 0.05) };
+                if scene.material.friction_stiffness == 0.0 { (-0.01, 0.01) } else { (-0.05, 0.05) };
             prop_assert!(off > low && off < high, "total energy off by {off:e} of that in play");
             before = now;
         }
