@@ -9,7 +9,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
-use tumble_io::run::{Finished, Progress, RunError, RunFolder};
+use tumble_io::run::{Finished, Progress, RunError, RunFolder, Summary};
 use tumble_io::scene::{LoadOptions, Loaded, SceneError, load_builtin, load_file};
 
 use crate::scenes::unknown_scene;
@@ -128,8 +128,11 @@ fn show(bar: &ProgressBar, progress: Progress) {
 fn report(finished: &Finished, folder: &RunFolder) -> String {
     let (s, e) = (&finished.summary, &finished.energy);
     let lost = e.drag + e.dashpot + e.slip;
-    let relative = if s.energy_start != 0.0 {
-        format!(" ({:+.2e} of the start)", s.energy_residual / s.energy_start.abs())
+    // gravitational energy has an arbitrary zero: only what moves, is stored or is lost can be a measure
+    let in_play = e.kinetic + e.elastic + lost;
+    let relative = s.energy_residual / in_play;
+    let share = if relative.is_finite() {
+        format!(" ({relative:+.2e} of the energy in play)")
     } else {
         String::new()
     };
@@ -141,7 +144,7 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
     let critical = s.critical_dt.map_or(String::new(), |critical| {
         format!(", {} of the critical {} s", short(s.dt / critical), short(critical))
     });
-    let rows = [
+    let mut rows = vec![
         ("scene", format!("{}, {} bodies, {} particles", s.scene, s.bodies, count(s.particles))),
         ("integrator", format!("{}, dt = {} s{critical}", s.integrator, short(s.dt))),
         ("steps", format!("{steps} in {} s", short(s.wall_seconds))),
@@ -161,9 +164,30 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
             ),
         ),
         ("", format!("{} J lost on the way", short(lost))),
-        ("residual", format!("{} J{relative}", short(s.energy_residual))),
+        ("residual", format!("{} J{share}", short(s.energy_residual))),
         ("deepest contact", format!("{} m", short(s.max_depth))),
         ("results", folder.path().display().to_string()),
     ];
+    let advice = advice(s, relative);
+    rows.extend(advice.into_iter().map(|advice| ("beware", advice)));
     table(&rows)
+}
+
+/// What a user should know before trusting the numbers.
+fn advice(s: &Summary, relative: f64) -> Vec<String> {
+    let mut advice = Vec::new();
+    if let Some(critical) = s.critical_dt.filter(|&critical| s.dt > critical) {
+        let critical = short(critical);
+        advice.push(format!("dt is above the critical {critical} s: contact is unstable"));
+    }
+    if relative.abs() > 0.01 {
+        let remedy = if s.integrator == "euler" {
+            "integrator = \"splitting\" or a smaller dt does better"
+        } else {
+            "a smaller dt or an energy_tolerance does better"
+        };
+        let percent = 100.0 * relative;
+        advice.push(format!("the integrator is off by {percent:+.2} % of the energy: {remedy}"));
+    }
+    advice
 }

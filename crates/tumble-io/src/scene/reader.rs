@@ -307,7 +307,7 @@ impl<'a> Reader<'a> {
             let mut known: Vec<&str> = asked.clone();
             known.sort_unstable();
             known.dedup();
-            let help = match nearest(&entry.key, &known) {
+            let help = match meant(&entry.key, &known) {
                 Some(near) => format!("did you mean `{near}`?"),
                 None => format!("known here: {}", quoted_keys(&known)),
             };
@@ -341,6 +341,39 @@ fn numbers<const N: usize>(node: &Node) -> Option<[f64; N]> {
     let Value::Array(items) = &node.value else { return None };
     let numbers: Option<Vec<f64>> = items.iter().map(number).collect();
     numbers?.try_into().ok()
+}
+
+/// What people call things elsewhere, and what they are called here.
+const ALIASES: [(&str, &str); 22] = [
+    ("friction", "friction_stiffness"),
+    ("mu", "friction_stiffness"),
+    ("friction_coefficient", "friction_stiffness"),
+    ("stiffness", "collision_stiffness"),
+    ("k", "collision_stiffness"),
+    ("damping", "collision_damping"),
+    ("c", "velocity_damping_stiffness"),
+    ("drag", "velocity_damping_stiffness"),
+    ("g", "gravity"),
+    ("h", "dt"),
+    ("timestep", "dt"),
+    ("time_step", "dt"),
+    ("v", "initial_velocity"),
+    ("velocity", "initial_velocity"),
+    ("omega", "initial_angular_velocity"),
+    ("angular_velocity", "initial_angular_velocity"),
+    ("rotation", "orientation"),
+    ("quaternion", "orientation"),
+    ("points", "particles"),
+    ("file", "mesh"),
+    ("e", "restitution"),
+    ("time", "duration"),
+];
+
+/// The known word that `word` is another name for, or else is most like.
+pub fn meant<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let alias = ALIASES.iter().find(|(alias, _)| *alias == word);
+    let named = alias.and_then(|(_, name)| known.iter().find(|known| *known == name));
+    named.copied().or_else(|| nearest(word, known))
 }
 
 /// The word most like `word`, if one is near enough to have been meant.

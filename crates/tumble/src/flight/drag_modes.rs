@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::Glide;
 use crate::shape::{Shape, diagonalise};
 
 /// The six motions of a body that drag only slows down, each at its own rate.
@@ -62,20 +63,34 @@ impl DragModes {
         self.rates.iter().fold(0.0, |m, &rate| m.max(rate))
     }
 
-    /// Slows velocity (m/s) and angular momentum (kg·m²/s), both in principal axes, by drag with
-    /// coefficient `c` over `time`; returns the energy that it takes (J).
-    pub fn damp(&self, velocity: &mut DVec3, momentum: &mut DVec3, c: f64, time: f64) -> f64 {
+    /// Lets gravity and drag with coefficient `c` act for `time` on velocity (m/s) and angular
+    /// momentum (kg·m²/s), with `gravity` (m/s²), all in principal axes and none of them turning;
+    /// returns the energy that drag takes (J).
+    ///
+    /// Each mode is a glide of its own: a' = b − c λ a, with b its share of gravity.
+    pub fn fall(
+        &self,
+        velocity: &mut DVec3,
+        momentum: &mut DVec3,
+        gravity: DVec3,
+        c: f64,
+        time: f64,
+    ) -> f64 {
         let w = *momentum * self.inverse_root_inertia;
-        let v = *velocity * self.root_mass;
+        let (v, pull) = (*velocity * self.root_mass, gravity * self.root_mass);
         let motion = [v.x, v.y, v.z, w.x, w.y, w.z];
+        let pull = [pull.x, pull.y, pull.z, 0.0, 0.0, 0.0];
         let mut change = [0.0; 6];
         let mut loss = 0.0;
         for (rate, mode) in self.rates.iter().zip(&self.modes) {
-            let amplitude: f64 = mode.iter().zip(&motion).map(|(m, y)| m * y).sum();
-            let gone = libm::expm1(-c * rate * time);
-            loss -= 0.5 * amplitude * amplitude * gone * (2.0 + gone);
+            let along =
+                |vector: &[f64; 6]| -> f64 { mode.iter().zip(vector).map(|(m, y)| m * y).sum() };
+            let (a, b) = (DVec3::X * along(&motion), DVec3::X * along(&pull));
+            let glide = Glide::new(time, c * rate);
+            loss += glide.loss(a, b);
+            let (_, end) = glide.advance(a, b);
             for (sum, m) in change.iter_mut().zip(mode) {
-                *sum += m * amplitude * gone;
+                *sum += m * (end.x - a.x);
             }
         }
         *velocity += DVec3::new(change[0], change[1], change[2]) / self.root_mass;

@@ -27,7 +27,9 @@ fn fly_those(model: &Model, state: &mut State, scratch: &Scratch, h: f64, near: 
 ///
 /// Where equal particles carry the mass, drag slows L down and changes nothing else about the
 /// rotation: with L(t) = L e^(−γ t) the body turns as one without drag does in the time (1 − e^(−γ h))/γ.
-/// With mass spread otherwise drag is a linear flow of its own, half of it before and half after.
+/// With mass spread otherwise drag and gravity are a linear flow of their own, exact while the body
+/// does not turn: half of it before and half after a flight without either. Second order in h then, with
+/// the right terminal velocity at any h.
 pub(crate) fn fly_body(model: &Model, body: &BodyModel, state: &mut BodyState, h: f64) -> f64 {
     let c = model.velocity_damping_stiffness;
     let Some(modes) = body.drag_modes.as_ref().filter(|_| c > 0.0) else {
@@ -36,15 +38,15 @@ pub(crate) fn fly_body(model: &Model, body: &BodyModel, state: &mut BodyState, h
     let mut lost = 0.0;
     for part in [0, 1, 2] {
         if part == 1 {
-            lost += glide(model.gravity, body, state, h, 0.0);
+            glide(DVec3::ZERO, body, state, h, 0.0);
             continue;
         }
         let principal = DMat3::from_quat(state.orientation) * body.shape.principal().axes;
-        let mut velocity = principal.transpose() * state.velocity;
-        let mut momentum = principal.transpose() * state.angular_momentum;
-        lost += modes.damp(&mut velocity, &mut momentum, c, 0.5 * h);
-        state.velocity = principal * velocity;
-        state.angular_momentum = principal * momentum;
+        let inward = principal.transpose();
+        let (mut v, mut l) = (inward * state.velocity, inward * state.angular_momentum);
+        lost += modes.fall(&mut v, &mut l, inward * model.gravity, c, 0.5 * h);
+        state.velocity = principal * v;
+        state.angular_momentum = principal * l;
     }
     lost
 }

@@ -122,6 +122,7 @@ impl Mover<'_> {
                 size *= 2;
             }
         }
+        self.forces.max_depth = lost.max_depth;
         lost
     }
 
