@@ -38,8 +38,8 @@ pub struct Finished {
 /// Runs a scene to its end and writes everything into `folder`.
 ///
 /// `watch` hears of the progress some twenty times a second and returns whether to go on; when it
-/// says no, what is done until then is written as for a finished run. Checkpoints are written on
-/// the way and at the end, whichever end that is.
+/// says no, what is done until then is written as for a finished run. Checkpoints are written at
+/// the start, on the way and at the end, whichever end that is.
 ///
 /// # Errors
 /// [`RunError`]: the simulation failed, or a file cannot be written. No `summary.json` is left then.
@@ -52,6 +52,8 @@ pub fn run(
     folder.claim(&scene)?;
     let mut recording = Recording::start(folder, &scene, &world, world.energy().total())?;
     recording.frame(&world)?;
+    // from now on there is always a state to go on from
+    recording.checkpoint(&scene, world.state())?;
     Run::new(scene, world, recording).finish(folder, watch)
 }
 

@@ -159,7 +159,8 @@ impl<'a> Reader<'a> {
                 None
             }
             None => {
-                self.wrong_type(key, node, &format!("an array of {N} numbers"));
+                let wanted = if key == "orientation" { " (a quaternion w, x, y, z)" } else { "" };
+                self.wrong_type(key, node, &format!("an array of {N} numbers{wanted}"));
                 None
             }
         }
