@@ -115,7 +115,8 @@ impl Mover<'_> {
             if self.correct(-self.state.energy_owed) {
                 self.state.energy_owed = 0.0;
             }
-            start = self.account();
+            // the correction moves nothing: only the kinetic energy is another
+            start = Account { kinetic: self.kinetic_energy(), ..end };
             at += size;
             // twice as long, where that ends on a multiple of itself
             if at % (2 * size) == 0 && at + 2 * size <= whole {
@@ -178,6 +179,10 @@ impl Mover<'_> {
     fn fly(&mut self, h: f64) -> Tally {
         let drag = fly_body(self.model, self.body, self.state, h);
         Tally { drag, ..Tally::default() }
+    }
+
+    fn kinetic_energy(&self) -> f64 {
+        Placed::new(self.body, self.state).kinetic_energy(self.state.angular_momentum)
     }
 
     fn account(&self) -> Account {
