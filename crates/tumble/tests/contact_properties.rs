@@ -191,8 +191,15 @@ fn difference(a: &State, b: &State, units: Units) -> f64 {
         .max((a.orientation - b.orientation).length())
 }
 
+/// So many scenes, the same ones in every run: how far rounding is magnified depends on the scene, and a
+/// check must not depend on luck. Another seed looks at other scenes.
+fn cases(count: u32) -> ProptestConfig {
+    let rng_seed = proptest::test_runner::RngSeed::Fixed(1);
+    ProptestConfig { rng_seed, ..ProptestConfig::with_cases(count) }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(256))]
+    #![proptest_config(cases(256))]
 
     #[test]
     fn energy_never_rises_and_losses_never_fall(scene in scene()) {
@@ -348,7 +355,7 @@ fn wild_vector() -> impl Strategy<Value = DVec3> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4000))]
+    #![proptest_config(cases(4000))]
 
     #[test]
     fn a_state_that_is_not_finite_is_an_error(
