@@ -4,6 +4,7 @@ FOLDER holds what body.py wrote; an engine that is not named is left out.
 """
 import statistics
 import sys
+from functools import partial
 
 import motion
 from with_rapier import Rapier
@@ -14,34 +15,64 @@ TUMBLE = (
     (1e-3, 8e3, 4.0),
     (2.5e-4, 4e4, 15.0),
 )
-RAPIER = (("f32", "trimesh"), ("f32", "hull"), ("f64", "trimesh"), ("f64", "hull"))
+# precision, shape, and how far it is run (s); a step of the triangle mesh takes tens of milliseconds
+RAPIER = (("f32", "hull", None), ("f64", "hull", None), ("f32", "parts", None), ("f32", "trimesh", 0.3))
+
+
+FAILED = []  # notes
 
 
 def rows(folder, tumble=None, rapier=None, mujoco=None):
-    """One engine with one group of settings each."""
+    """What makes one engine with one group of settings each, after a name for it."""
     if tumble:
         for dt, k, c in TUMBLE:
             sets = [f"collision.collision_stiffness={k!r}", f"collision.collision_damping={c!r}"]
-            yield Tumble(tumble, folder, dt, f"splitting; {k:g} N/m, {c:g} N·s/m a particle", sets)
+            settings = f"splitting; {k:g} N/m, {c:g} N·s/m a particle"
+            yield "tumble", partial(Tumble, tumble, folder, dt, settings, sets)
     if mujoco:
-        from with_mujoco import MuJoCo
-
-        yield MuJoCo(folder)
-        yield MuJoCo(folder, integrator="implicitfast")
-        yield MuJoCo(folder, hull=64)
+        for settings in ({}, {"integrator": "implicitfast"}, {"hull": 64}):
+            yield "MuJoCo", partial(mujoco_engine, folder, **settings)
     if rapier:
-        for precision, shape in RAPIER:
-            yield Rapier(rapier, folder, precision, shape)
+        for settings in RAPIER:
+            yield "Rapier", partial(Rapier, rapier, folder, *settings)
+
+
+def mujoco_engine(*words, **settings):
+    """MuJoCo is imported only where it is wanted."""
+    from with_mujoco import MuJoCo
+
+    return MuJoCo(*words, **settings)
+
+
+def attempt(name, what):
+    """The result of `what`; if it fails, None, and a note for the last lines."""
+    try:
+        return what()
+    except Exception as error:  # whatever is wrong with one engine, the others are still compared
+        said = getattr(error, "stderr", None) or str(error)
+        if isinstance(said, bytes):
+            said = said.decode(errors="replace")
+        lines = [line for line in said.splitlines() if line.strip()] or [repr(error)]
+        FAILED.append(f"{name}: {lines[0]}")
+        return None
 
 
 def timed(engines, rounds):
-    """Median seconds of each phase for each engine; all of them take turns."""
+    """Each engine that runs, and the median seconds of its phases; all of them take turns."""
     found = [[] for _ in engines]
     for number in range(rounds):
         for engine, runs in zip(engines, found):
-            print(f"round {number + 1}: {engine.engine}, {engine.settings}", file=sys.stderr)
-            runs.append(engine.seconds())
-    return [[statistics.median(phase) for phase in zip(*runs)] for runs in found]
+            if number > 0 and (engine.until or not runs):
+                continue
+            name = f"{engine.engine}, {engine.settings}"
+            print(f"round {number + 1}: {name}", file=sys.stderr)
+            if seconds := attempt(name, engine.seconds):
+                runs.append(seconds)
+    return [
+        (engine, [statistics.median(phase) for phase in zip(*runs)])
+        for engine, runs in zip(engines, found)
+        if runs
+    ]
 
 
 def table(head, rows):
@@ -61,19 +92,19 @@ def figure(value):
     return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
-def times(engines, medians):
+def times(medians):
     """Rows of times. The last column compares with the first engine."""
-    whole = [sum(spent) for spent in medians]
-    for engine, spent, total in zip(engines, medians, whole):
-        ends = [0.0, *motion.PHASES.values()]
+    ends = [0.0, *motion.PHASES.values()]
+    first = sum(medians[0][1])
+    for engine, spent in medians:
+        if engine.until:
+            yield [*names(engine), figure(1e6 * spent[0] * engine.dt / engine.until), *["–"] * 5]
+            continue
+        whole = sum(spent)
         steps = [(b - a) / engine.dt for a, b in zip(ends, ends[1:])]
-        micros = [1e6 * s / n for s, n in zip([*spent, total], [*steps, sum(steps)])]
-        yield [
-            *names(engine),
-            *map(figure, micros),
-            figure(1e3 * total / ends[-1]),
-            f"{total / whole[0]:.3g}",
-        ]
+        micros = [1e6 * s / n for s, n in zip([*spent, whole], [*steps, sum(steps)])]
+        per_second = figure(1e3 * whole / ends[-1])
+        yield [*names(engine), *map(figure, micros), per_second, f"{whole / first:.3g}"]
 
 
 def looks(engines, folder):
@@ -83,9 +114,13 @@ def looks(engines, folder):
     rest = slice(round(motion.PHASES["settling"] / motion.DT), None, 10)
     start = motion.energies(motion.first_state(motion.BOUNCE), moments)[1][0]
     for engine in engines:
+        if engine.until:
+            continue
         print(f"look: {engine.engine}, {engine.settings}", file=sys.stderr)
-        drop, _ = engine.states(drop=True)
-        states, contacts = engine.states()
+        found = attempt(f"look at {engine.engine}", lambda: (engine.states(drop=True)[0], engine.states()))
+        if not found:
+            continue
+        drop, (states, contacts) = found
         kinetic, energy = motion.energies(states, moments)
         depth, points = zip(*(motion.behind(part, body) for part in (drop, states[bouncing], states[rest])))
         # every particle behind a wall is a contact, unless the engine has its own
@@ -104,24 +139,25 @@ def looks(engines, folder):
 
 def main():
     folder, rounds, *programs = sys.argv[1:]
-    engines = list(rows(folder, **dict(word.split("=", 1) for word in programs)))
+    chosen = dict(word.split("=", 1) for word in programs)
+    engines = [attempt(name, make) for name, make in rows(folder, **chosen)]
+    medians = timed([engine for engine in engines if engine], int(rounds))
     begin = ["engine", "settings", "dt (s)"]
     micros = [f"{name}, µs/step" for name in (*motion.PHASES, "whole")]
-    medians = timed(engines, int(rounds))
-    table([*begin, *micros, "whole, ms per simulated s", "× the first row"], times(engines, medians))
-    table(
-        [
-            *begin,
-            "rebound, flat drop",
-            "deepest: flat drop (mm)",
-            "bouncing (mm)",
-            "at rest (mm)",
-            "contacts: most bouncing, mean at rest",
-            "energy at 0, 2, 10 s (J)",
-            "kinetic at rest (J)",
-        ],
-        looks(engines, folder),
-    )
+    if medians:
+        table([*begin, *micros, "whole, ms per simulated s", "× the first row"], times(medians))
+    looked = [
+        "rebound, flat drop",
+        "deepest: flat drop (mm)",
+        "bouncing (mm)",
+        "at rest (mm)",
+        "contacts: most bouncing, mean at rest",
+        "energy at 0, 2, 10 s (J)",
+        "kinetic at rest (J)",
+    ]
+    table([*begin, *looked], looks([engine for engine, _ in medians], folder))
+    for note in FAILED:
+        print("Failed:", note)
 
 
 main()

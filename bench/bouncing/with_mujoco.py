@@ -48,6 +48,7 @@ class MuJoCo:
     """One row: an integrator, and the most vertices that the hull may have (-1: all)."""
 
     engine = f"MuJoCo {mujoco.__version__}"
+    until = None  # all of it
 
     def __init__(self, folder, integrator="Euler", hull=-1, damping_ratio=DAMPING_RATIO):
         self.dt = DT

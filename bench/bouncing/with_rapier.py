@@ -6,15 +6,20 @@ import numpy as np
 from motion import BOUNCE, DROP, DROP_TIME, DT, PHASES
 
 
+NAMES = {"hull": "convex hull", "parts": "convex decomposition", "trimesh": "triangle mesh"}
+
+
 class Rapier:
-    """One row: a precision and a shape of the body, `trimesh` or `hull`."""
+    """One row: a precision, a shape of the body, and how far it is run (s) where all would take too long."""
 
     engine = "Rapier 0.36.1"
 
-    def __init__(self, program, folder, precision, shape):
-        self.command, self.dt, self.folder = [program], DT, str(folder)
+    def __init__(self, program, folder, precision, shape, until=None):
+        self.command, self.dt, self.folder, self.until = [program], DT, str(folder), until
         self.words = (precision, shape)
-        self.settings = f"{precision}; {shape}"
+        self.settings = f"{precision}; {NAMES[shape]}"
+        if until:
+            self.settings += f"; first {until:g} s only, once"
 
     def _call(self, what, motion, *ends):
         numbers = [str(v) for vector in motion for v in vector]
@@ -24,7 +29,8 @@ class Rapier:
 
     def seconds(self):
         """Seconds in the steps of each phase."""
-        return [float(line) for line in self._call("time", BOUNCE, *PHASES.values())]
+        ends = [self.until] if self.until else PHASES.values()
+        return [float(line) for line in self._call("time", BOUNCE, *ends)]
 
     def states(self, drop=False):
         """Position, orientation, velocity and angular velocity, one row a step, and its contacts."""

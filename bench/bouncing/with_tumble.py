@@ -14,6 +14,8 @@ from motion import BOUNCE, DROP, DROP_TIME, PHASES
 class Tumble:
     """One row: `sets` are laid over the scene, as with `--set`."""
 
+    until = None  # all of it
+
     def __init__(self, command, folder, dt, label, sets):
         self.command, self.folder, self.dt, self.settings = command, pathlib.Path(folder), dt, label
         self.sets = [f"dt={dt!r}", *sets]

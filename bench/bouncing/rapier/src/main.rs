@@ -1,6 +1,6 @@
 //! A body that bounces in a closed box, in Rapier.
 //!
-//! `bouncing-rapier time|look f32|f64 trimesh|hull FOLDER START… END…`: FOLDER holds what `body.py`
+//! `bouncing-rapier time|look f32|f64 trimesh|hull|parts FOLDER START… END…`: FOLDER holds what `body.py`
 //! writes; START is position, velocity and angular velocity; ENDs are the ends of the phases (s).
 //!
 //! `time` prints the seconds spent in the steps of each phase. `look` prints position, w x y z,
@@ -80,7 +80,8 @@ macro_rules! bounce {
         let shape = match $shape {
             "trimesh" => ColliderBuilder::trimesh(points, input.triangles.clone()).expect("a mesh"),
             "hull" => ColliderBuilder::convex_hull(&points).expect("a hull"),
-            other => panic!("{other}: trimesh or hull"),
+            "parts" => ColliderBuilder::convex_decomposition(&points, &input.triangles),
+            other => panic!("{other}: trimesh, hull or parts"),
         };
         let start: &[f64] = $start;
         let body = RigidBodyBuilder::dynamic()
