@@ -1,4 +1,5 @@
-"""Writes the body into a folder: `body.obj`, its points and triangles, and `setup.txt`, what engines need to know.
+"""Writes the body into a folder: `body.obj`, its points and triangles, and `setup.txt`, the numbers
+that engines need.
 
 40,000 points of equal mass on a bumpy ellipsoid, about its centre of mass and along its principal axes.
 """

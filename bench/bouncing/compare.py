@@ -1,10 +1,13 @@
-"""Times the engines in turns and prints two tables: compare.py FOLDER ROUNDS tumble=PATH mujoco=yes rapier=PATH
+"""Times the engines in turns and prints two tables.
 
+compare.py FOLDER ROUNDS tumble=PATH mujoco=yes rapier=PATH
 FOLDER holds what body.py wrote; an engine that is not named is left out.
 """
 import statistics
 import sys
 from functools import partial
+
+from scipy.spatial import ConvexHull
 
 import motion
 from with_rapier import Rapier
@@ -16,7 +19,12 @@ TUMBLE = (
     (2.5e-4, 4e4, 15.0),
 )
 # precision, shape, and how far it is run (s); a step of the triangle mesh takes tens of milliseconds
-RAPIER = (("f32", "hull", None), ("f64", "hull", None), ("f32", "parts", None), ("f32", "trimesh", 0.3))
+RAPIER = (
+    ("f32", "hull", None),
+    ("f64", "hull", None),
+    ("f32", "parts", None),
+    ("f32", "trimesh", 0.3),
+)
 
 
 FAILED = []  # notes
@@ -110,6 +118,7 @@ def times(medians):
 def looks(engines, folder):
     """Rows of what the motions are like, from runs of their own."""
     body, moments = motion.points(folder), motion.setup(folder)["moments"]
+    hull = body[ConvexHull(body).vertices]
     bouncing = slice(round(motion.PHASES["bouncing"] / motion.DT))
     rest = slice(round(motion.PHASES["settling"] / motion.DT), None, 10)
     start = motion.energies(motion.first_state(motion.BOUNCE), moments)[1][0]
@@ -122,7 +131,8 @@ def looks(engines, folder):
             continue
         drop, (states, contacts) = found
         kinetic, energy = motion.energies(states, moments)
-        depth, points = zip(*(motion.behind(part, body) for part in (drop, states[bouncing], states[rest])))
+        parts = (drop, states[bouncing], states[rest])
+        depth, points = zip(*(motion.behind(part, body, hull) for part in parts))
         # every particle behind a wall is a contact, unless the engine has its own
         most, mean = points[1].max(), points[2].mean()
         if contacts is not None:

@@ -43,13 +43,16 @@ def rotations(q):
     return np.moveaxis(np.array(rows), 2, 0)
 
 
-def behind(states, body):
-    """For each state how deep the deepest point is behind a wall (m; 0 in flight), and how many are."""
+def behind(states, body, hull):
+    """For each state how deep the deepest point is behind a wall (m; 0 in flight), and how many are.
+
+    The deepest is a corner of the hull, so the whole body is looked at in contact only.
+    """
     deepest, count = np.zeros(len(states)), np.zeros(len(states), int)
     for at, (state, turn) in enumerate(zip(states, rotations(states[:, 3:7]))):
-        depth = np.abs(body @ turn.T + state[:3]) - BOX
-        deepest[at] = max(0.0, depth.max())
-        count[at] = (depth.max(axis=1) > 0.0).sum()
+        deepest[at] = max(0.0, np.abs(hull @ turn.T + state[:3]).max() - BOX)
+        if deepest[at] > 0.0:
+            count[at] = (np.abs(body @ turn.T + state[:3]).max(axis=1) > BOX).sum()
     return deepest, count
 
 

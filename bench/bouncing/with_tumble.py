@@ -1,4 +1,4 @@
-"""The bouncing body in tumble, whose command is given: the scene bouncing.toml, with other numbers laid over it."""
+"""The bouncing body in tumble, whose command is given: bouncing.toml, with numbers laid over it."""
 import csv
 import json
 import pathlib
@@ -49,7 +49,7 @@ class Tumble:
             return spent
 
     def states(self, drop=False):
-        """Position, orientation, velocity and angular velocity, one row a millisecond, and no word on contacts."""
+        """Position, orientation, velocity and angular velocity, one row a millisecond."""
         start, end = (DROP, DROP_TIME) if drop else (BOUNCE, max(PHASES.values()))
         with tempfile.TemporaryDirectory() as folder:
             out = pathlib.Path(folder, "run")
