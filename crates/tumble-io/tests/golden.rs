@@ -10,16 +10,16 @@ use tumble_io::scene::{BUILTIN, LoadOptions, load_builtin};
 
 /// Name and state hash after 400 steps.
 const GOLDEN: &[(&str, &str)] = &[
-    ("task1", "d7b9c01364eda4169b40f3cd30d5b071"),
-    ("task2", "a350aa5a52e42bf938c569180f9dbb9e"),
-    ("task1-cat", "340d1e93ff70d0b0e4839c96324efaa9"),
-    ("task2-cat", "7d90d778bcc521d18b22f8f8a360bcea"),
+    ("task1", "162106944c9a2cc1adaeaf668f2a96bd"),
+    ("task2", "b8b9369ae573bdbdf32b3740f228c13e"),
+    ("task1-cat", "8accbc5685a98681f1d8a32c8d86afdb"),
+    ("task2-cat", "b8d48a49af920d5119f884d44603fe4b"),
     ("top", "93d71a947b97faf74eede21faf2f89c2"),
     ("racket", "5675f2f02314daed7f3b503609cf8043"),
-    ("coin", "8566f64f0e29a6236e5ce232e5bea251"),
+    ("coin", "3dfb3d66d04e7b60db2e869d05186288"),
     ("slope", "d4a442a1bee5f295e93a54308ac624f0"),
-    ("many", "a35664133f3c493970a74d7bba309517"),
-    ("bounce", "a09eb3f422f35331e3d4c6a956b92a5d"),
+    ("many", "aa76daacf816bfab2f4137fb5d62214c"),
+    ("bounce", "b87477dcf70b7b6ca2efa4efc2d3be57"),
 ];
 
 #[test]

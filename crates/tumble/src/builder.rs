@@ -303,6 +303,7 @@ impl WorldBuilder {
             inverse_inertia,
             inverse_moments: DVec3::from_array(inverse_moments),
             drag_modes: DragModes::of(&body.shape, mass),
+            has_friction: contacts.iter().any(|law| law.friction > 0.0),
             is_damped: contacts.iter().any(ContactLaw::is_damped),
             contacts,
         })

@@ -39,6 +39,7 @@ mod energy;
 mod error;
 mod flight;
 mod hash;
+mod lanes;
 mod material;
 mod model;
 mod restore;

@@ -71,6 +71,8 @@ pub struct BodyModel {
     pub drag_modes: Option<DragModes>,
     /// The contact law against each wall, in the order of [`Model::walls`].
     pub contacts: Vec<ContactLaw>,
+    /// Whether any of these contacts has friction.
+    pub has_friction: bool,
     /// Whether the force of any of these contacts depends on velocity.
     pub is_damped: bool,
 }

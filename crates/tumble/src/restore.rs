@@ -121,22 +121,22 @@ fn possible(body: &str, values: &[(&'static str, bool)]) -> Result<(), StateErro
 
 /// Springs of walls and particles that are there, each once, in order.
 fn fitting_springs(body: &BodyModel, springs: &[FrictionSpring]) -> Result<(), StateError> {
-    let (walls, particles) = (body.contacts.len(), body.shape.particles().len());
+    let (walls, particles) = (body.contacts.len(), body.shape.particles());
     let mut before = None;
     for spring in springs {
-        let key = (spring.wall, spring.particle);
-        let there = (key.0 as usize) < walls && (key.1 as usize) < particles;
-        if !there || before >= Some(key) {
+        let there = (spring.wall as usize) < walls && (spring.particle as usize) < particles.len();
+        let key = there.then(|| (spring.wall, particles.slot_of(spring.particle)));
+        if key.is_none() || before >= key {
             return Err(StateError::Spring {
                 body: body.name.clone(),
-                wall: key.0,
-                particle: key.1,
+                wall: spring.wall,
+                particle: spring.particle,
             });
         }
         let springs =
             [("anchor", spring.anchor.is_finite()), ("stretch", spring.stretch.is_finite())];
         possible(&body.name, &springs)?;
-        before = Some(key);
+        before = key;
     }
     Ok(())
 }

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::FrictionSpring;
+use crate::stage::Touching;
 
 /// Room for what is derived within a step. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -13,18 +14,21 @@ pub struct Scratch {
     pub forces: Vec<BodyForces>,
     /// The friction springs that go on from this evaluation, one list a body.
     pub springs: Vec<Vec<FrictionSpring>>,
+    /// Particles of one body in contact, while they are looked at.
+    pub(crate) touching: Touching,
     /// Friction springs of one body to go back to.
     pub(crate) backup: Vec<FrictionSpring>,
 }
 
 impl Scratch {
-    /// Room for `body_count` bodies; allocates only when it was smaller before.
-    pub(crate) fn clear(&mut self, body_count: usize) {
-        self.forces.clear();
-        self.forces.resize(body_count, BodyForces::default());
-        self.springs.resize_with(body_count, Vec::new);
-        self.near.clear();
-        self.near.resize(body_count, true);
+    /// Room for `body_count` bodies; allocates only when it was another number before. What is in it is left as it is:
+    /// each stage writes what it owns before another reads it.
+    pub(crate) fn fit(&mut self, body_count: usize) {
+        if self.forces.len() != body_count {
+            self.forces.resize(body_count, BodyForces::default());
+            self.springs.resize_with(body_count, Vec::new);
+            self.near.resize(body_count, true);
+        }
     }
 }
 
@@ -41,6 +45,13 @@ impl std::ops::Add for Wrench {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self { force: self.force + other.force, torque: self.torque + other.torque }
+    }
+}
+
+impl std::ops::Sub for Wrench {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self { force: self.force - other.force, torque: self.torque - other.torque }
     }
 }
 
@@ -82,6 +93,8 @@ impl BodyForces {
 
     /// Forgets the walls.
     pub(crate) fn clear_contact(&mut self) {
-        *self = Self { gravity: self.gravity, drag: self.drag, ..Self::default() };
+        let none = Wrench::default();
+        (self.spring, self.dashpot, self.friction) = (none, none, none);
+        (self.slip, self.max_depth) = (0.0, 0.0);
     }
 }

@@ -11,7 +11,8 @@ pub struct State {
     pub time: f64,
     /// One entry a body.
     pub bodies: Vec<BodyState>,
-    /// The friction springs of each body, sorted by wall and particle.
+    /// The friction springs of each body, sorted by wall, those of a wall in the order in which the shape
+    /// keeps its particles.
     pub springs: Vec<Vec<FrictionSpring>>,
     /// What the run has lost or met so far.
     pub tally: Tally,

@@ -11,7 +11,7 @@ use crate::{Integrator, Model, Scratch, State, StepError, stage};
 /// [`StepError`] when the new state cannot be trusted.
 pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(), StepError> {
     let h = model.dt;
-    scratch.clear(model.bodies.len());
+    scratch.fit(model.bodies.len());
     match (model.integrator, model.energy_tolerance) {
         (Integrator::Splitting, None) => {
             stage::reach(model, state, scratch, h);
@@ -29,6 +29,7 @@ pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(
         (Integrator::Euler, _) => {
             stage::gravity(model, scratch); // 2
             stage::drag(model, state, scratch); // 8
+            stage::reach(model, state, scratch, 0.0);
             stage::contact(model, state, scratch, 0.0); // 9, with 3 and 4
             stage::euler(model, state, scratch); // 5 to 7
         }

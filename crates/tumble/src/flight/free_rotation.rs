@@ -81,10 +81,13 @@ pub fn free_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> Turn {
     let mut rest = time;
     let mut turn = Turn::NONE;
     let pace = euler.pace(u);
-    if pace.rate * time.abs() > MANY_PIECES * PIECE && pace.period < time.abs() {
-        let periods = (time / pace.period).trunc();
-        rest = libm::fmod(time, pace.period);
-        turn = Turn::about(start, euler.angle_of_period(u, &pace) * periods);
+    if pace.rate * time.abs() > MANY_PIECES * PIECE {
+        let period = pace.period();
+        if period < time.abs() {
+            rest = libm::fmod(time, period);
+            let periods = (time / period).trunc();
+            turn = Turn::about(start, euler.angle_of_period(u, pace.rate, period) * periods);
+        }
     }
     let pieces = (pace.rate * rest.abs() / PIECE).ceil().max(1.0);
     for _ in 0..pieces as u64 {
@@ -114,8 +117,19 @@ struct Pace {
     /// λ of the elliptic functions that u is made of (rad/s); no complex pole is nearer than π/2 to
     /// λ t, whatever the modulus, so that pieces of λ t are right for their series.
     rate: f64,
+    /// λ and its complement, in units of `apart`.
+    lambda: f64,
+    complement: f64,
+    /// The difference of the largest and the smallest of ω's factors (rad/s).
+    apart: f64,
+}
+
+impl Pace {
     /// The time after which u comes back (s), infinite where it does not move.
-    period: f64,
+    fn period(&self) -> f64 {
+        let mean = arithmetic_geometric_mean(self.lambda, self.complement);
+        std::f64::consts::TAU / (self.apart * mean)
+    }
 }
 
 impl Euler {
@@ -181,7 +195,7 @@ impl Euler {
         let [a, b, c] = order;
         let ac = self.spin[c] - self.spin[a];
         if ac == 0.0 {
-            return Pace { rate: 0.0, period: f64::INFINITY };
+            return Pace { rate: 0.0, lambda: 0.0, complement: 0.0, apart: 0.0 };
         }
         // in units of D_ac, whose square may overflow
         let ab = (self.spin[b] - self.spin[a]) / ac;
@@ -191,16 +205,16 @@ impl Euler {
         let (near, of_near, of_far) = if side > 0.0 { (u[a], ab, bc) } else { (u[c], bc, ab) };
         let lambda = (of_near * (near * near + of_far * u[b] * u[b])).sqrt();
         // on the separatrix itself any rounding brings u back, after a long time
-        let mean = arithmetic_geometric_mean(lambda, side.abs().max(NEAREST).sqrt());
-        Pace { rate: ac * lambda, period: std::f64::consts::TAU / (ac * mean) }
+        let complement = side.abs().max(NEAREST).sqrt();
+        Pace { rate: ac * lambda, lambda, complement, apart: ac }
     }
 
     /// How far the body turns about L in one period (rad).
-    fn angle_of_period(&self, start: DVec3, pace: &Pace) -> f64 {
-        let pieces = (pace.rate * pace.period / PIECE).ceil().max(1.0);
+    fn angle_of_period(&self, start: DVec3, rate: f64, period: f64) -> f64 {
+        let pieces = (rate * period / PIECE).ceil().max(1.0);
         let (mut u, mut turn) = (start, Turn::NONE);
         for _ in 0..pieces as u64 {
-            let (piece, end) = self.piece(u, pace.period / pieces);
+            let (piece, end) = self.piece(u, period / pieces);
             turn = turn.after(piece);
             u = end;
         }

@@ -28,6 +28,10 @@ impl Phi {
             for n in 1..14 {
                 term *= -z / f64::from(n + 3);
                 three += term;
+                // what is left is below rounding: at once where there is no drag
+                if term.abs() < 1e-18 {
+                    break;
+                }
             }
             let two = 0.5 - z * three;
             return Self { one: 1.0 - z * two, two, three };

@@ -2,15 +2,18 @@
 
 mod body_shape;
 mod closedness;
+mod descend;
 mod integrals;
 mod mass;
 mod mesh;
 mod particles;
 mod primitive;
 mod sampling;
+mod tree;
 
 pub use body_shape::{MassModel, ParticleMoments, Shape, ShapeError};
 pub use closedness::{Closedness, EdgeFault, FaultyEdge};
+pub(crate) use descend::RampSums;
 pub use integrals::{Integrals, OpenMesh, ShellError};
 pub(crate) use mass::diagonalise;
 pub use mass::{MassProperties, PrincipalAxes};
@@ -18,3 +21,4 @@ pub use mesh::{Mesh, MeshError};
 pub use particles::Particles;
 pub use primitive::{Primitive, PrimitiveError};
 pub use sampling::{SampleError, Sampling};
+pub(crate) use tree::Ramp;

@@ -13,7 +13,8 @@ use crate::{BodyModel, BodyState, Model, Scratch, State, StepError};
 pub fn check(model: &Model, state: &State, scratch: &Scratch) -> Result<(), StepError> {
     for (index, body) in model.bodies.iter().enumerate() {
         let body_state = &state.bodies[index];
-        let problem = not_finite(body_state).or_else(|| {
+        let problem = if is_finite(body_state) { None } else { not_finite(body_state) };
+        let problem = problem.or_else(|| {
             let limit = 0.5 * model.gap?;
             too_deep(model, body, body_state, scratch.forces[index].max_depth, limit)
                 .or_else(|| too_far(model, body, body_state, limit))
@@ -39,6 +40,13 @@ struct Problem {
     value: f64,
     particle: Option<usize>,
     limit: Option<f64>,
+}
+
+fn is_finite(state: &BodyState) -> bool {
+    state.position.is_finite()
+        && state.velocity.is_finite()
+        && state.orientation.is_finite()
+        && state.angular_momentum.is_finite()
 }
 
 /// The first quantity that is not finite, and its value.
@@ -78,12 +86,14 @@ fn too_deep(
 
 /// A particle that moves farther than `limit` (m) in a step.
 fn too_far(model: &Model, body: &BodyModel, state: &BodyState, limit: f64) -> Option<Problem> {
-    // |ω| is at most |L| over the smallest moment: most bodies need no closer look
-    let fastest = body.inverse_moments.max_element() * state.angular_momentum.length();
-    let way = |omega: f64| model.dt * (state.velocity.length() + omega * body.shape.radius());
-    if way(fastest) <= limit {
+    // |ω| is at most |L| over the smallest moment, and (a + b)² at most 2 a² + 2 b²: most bodies
+    // need no closer look, and no root
+    let (v2, l2) = (state.velocity.length_squared(), state.angular_momentum.length_squared());
+    let rim = body.inverse_moments.max_element() * body.shape.radius();
+    if 2.0 * model.dt * model.dt * (v2 + rim * rim * l2) <= limit * limit {
         return None;
     }
+    let way = |omega: f64| model.dt * (state.velocity.length() + omega * body.shape.radius());
     let omega =
         body.angular_velocity(DMat3::from_quat(state.orientation), state.angular_momentum).length();
     if way(omega) <= limit {

@@ -6,11 +6,9 @@ use crate::{BodyModel, BodyState, Model, Scratch, State, Wrench};
 
 /// Adds up fᵢ = −c vᵢ over the particles of each body, in closed form.
 pub fn drag(model: &Model, state: &State, scratch: &mut Scratch) {
-    if model.velocity_damping_stiffness == 0.0 {
-        return;
-    }
+    let c = model.velocity_damping_stiffness;
     for ((body, state), forces) in model.bodies.iter().zip(&state.bodies).zip(&mut scratch.forces) {
-        forces.drag = body_drag(body, state, model.velocity_damping_stiffness);
+        forces.drag = if c > 0.0 { body_drag(body, state, c) } else { Wrench::default() };
     }
 }
 

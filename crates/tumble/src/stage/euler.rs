@@ -37,20 +37,24 @@ fn advance(
 
     // 7: angular momentum; ω follows from it through the inertia turned by the new orientation
     state.angular_momentum += total.torque * h;
-    let new_omega = angular_velocity(body, state);
+    *tally += Tally {
+        slip: forces.slip,
+        max_depth: forces.max_depth,
+        evaluations: u64::from(forces.max_depth > 0.0),
+        ..Tally::default()
+    };
+    if forces.drag == Wrench::default() && forces.dashpot == Wrench::default() {
+        return;
+    }
 
     // the work of a force over the step is F·h times the mean velocity: exactly its kinetic energy
+    let new_omega = angular_velocity(body, state);
     let mean_velocity = 0.5 * (old_velocity + state.velocity);
     let mean_omega = 0.5 * (old_omega + new_omega);
     let lost =
         |wrench: &Wrench| -h * (wrench.force.dot(mean_velocity) + wrench.torque.dot(mean_omega));
-    *tally += Tally {
-        drag: lost(&forces.drag),
-        dashpot: lost(&forces.dashpot),
-        slip: forces.slip,
-        max_depth: forces.max_depth,
-        evaluations: u64::from(forces.max_depth > 0.0),
-    };
+    tally.drag += lost(&forces.drag);
+    tally.dashpot += lost(&forces.dashpot);
 }
 
 /// 7: I⁻¹ = R I₀⁻¹ Rᵀ, ω = I⁻¹ L.

@@ -11,8 +11,8 @@ mod reach;
 mod refine;
 
 pub use check::check;
-pub(crate) use contact::Placed;
 pub use contact::contact;
+pub(crate) use contact::{Placed, Touching};
 pub use drag::drag;
 pub use euler::euler;
 pub use fly::{cruise, fly};

@@ -1,4 +1,4 @@
-//! Which bodies can touch a wall within a step.
+//! Which bodies can touch a wall within a step: no particle of the others is looked at.
 
 use crate::{Model, Scratch, State};
 
@@ -18,6 +18,8 @@ pub fn reach(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
         let way = h * (speed + h * model.gravity.length());
         let reach = body.reach() + way * (1.0 + 1e-9);
         let far = |wall: &crate::WallPlane| wall.depth(body_state.position) < -reach;
+        // who is far feels nothing
+        scratch.forces[index].clear_contact();
         scratch.near[index] = !(state.springs[index].is_empty() && model.walls.iter().all(far));
     }
 }

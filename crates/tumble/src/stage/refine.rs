@@ -14,7 +14,7 @@
 
 use glam::DMat3;
 
-use super::contact::{Placed, contact_body};
+use super::contact::{Placed, Room, Touching, contact_body};
 use super::fly::fly_body;
 use super::kick::kick_body;
 use crate::{
@@ -49,6 +49,7 @@ pub fn refine(model: &Model, state: &mut State, scratch: &mut Scratch, tolerance
             springs: &mut state.springs[index],
             forces: &mut scratch.forces[index],
             next: &mut scratch.springs[index],
+            touching: &mut scratch.touching,
             impulse: Wrench::default(),
         };
         state.tally += mover.in_parts(&mut scratch.backup, tolerance);
@@ -63,6 +64,7 @@ struct Mover<'a> {
     springs: &'a mut Vec<FrictionSpring>,
     forces: &'a mut BodyForces,
     next: &'a mut Vec<FrictionSpring>,
+    touching: &'a mut Touching,
     /// Contact's impulse over the step so far (N·s, N·m·s).
     impulse: Wrench,
 }
@@ -167,7 +169,8 @@ impl Mover<'_> {
     /// Fly – push – fly.
     fn leap(&mut self, h: f64) -> Tally {
         let mut lost = self.fly(0.5 * h);
-        contact_body(self.model, self.body, self.state, self.springs, (self.forces, self.next), h);
+        let room = Room { forces: self.forces, next: self.next, touching: self.touching };
+        contact_body(self.model, self.body, self.state, self.springs, room, h);
         lost += kick_body(self.body, self.state, self.forces, h);
         let kick = self.forces.contact();
         self.impulse += Wrench { force: kick.force * h, torque: kick.torque * h };

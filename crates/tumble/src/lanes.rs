@@ -1,0 +1,144 @@
+//! Eight vectors side by side, one a lane: arithmetic that gives the same bits whatever the width of
+//! the processor's registers.
+//!
+//! Sums over particles run in eight fixed lanes, which are added at the end in a fixed order. No multiplication
+//! is fused with an addition.
+
+use fearless_simd::{Simd, f64x8, prelude::*};
+use glam::{DMat3, DVec3};
+
+/// How many lanes there are.
+pub(crate) const LANES: usize = 8;
+
+/// Eight vectors.
+#[derive(Clone, Copy)]
+pub(crate) struct Vec3x8<S: Simd> {
+    pub x: f64x8<S>,
+    pub y: f64x8<S>,
+    pub z: f64x8<S>,
+}
+
+impl<S: Simd> Vec3x8<S> {
+    /// The same vector in each lane.
+    #[inline(always)]
+    pub fn splat(simd: S, v: DVec3) -> Self {
+        Self { x: f64x8::splat(simd, v.x), y: f64x8::splat(simd, v.y), z: f64x8::splat(simd, v.z) }
+    }
+
+    /// One vector a lane, by coordinate.
+    #[inline(always)]
+    pub fn load(simd: S, columns: &[[f64; LANES]; 3]) -> Self {
+        let [x, y, z] = columns;
+        Self {
+            x: f64x8::simd_from(simd, *x),
+            y: f64x8::simd_from(simd, *y),
+            z: f64x8::simd_from(simd, *z),
+        }
+    }
+
+    /// By coordinate, one vector a lane.
+    #[inline(always)]
+    pub fn store(self) -> [[f64; LANES]; 3] {
+        [self.x.into(), self.y.into(), self.z.into()]
+    }
+
+    /// A matrix times the vector in each lane.
+    #[inline(always)]
+    pub fn turned(self, simd: S, matrix: DMat3) -> Self {
+        Self {
+            x: self.dot(Self::splat(simd, matrix.row(0))),
+            y: self.dot(Self::splat(simd, matrix.row(1))),
+            z: self.dot(Self::splat(simd, matrix.row(2))),
+        }
+    }
+
+    /// a·b in each lane.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> f64x8<S> {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// a × b in each lane.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    /// The part of each vector across the unit vector `normal`.
+    #[inline(always)]
+    pub fn across(self, normal: Self) -> Self {
+        self - normal * self.dot(normal)
+    }
+
+    /// The sum over the lanes.
+    #[inline(always)]
+    pub fn sum(self) -> DVec3 {
+        DVec3::new(sum(self.x), sum(self.y), sum(self.z))
+    }
+}
+
+impl<S: Simd> std::ops::Add for Vec3x8<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
+}
+
+impl<S: Simd> std::ops::Sub for Vec3x8<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}
+
+impl<S: Simd> std::ops::Mul<f64x8<S>> for Vec3x8<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: f64x8<S>) -> Self {
+        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
+    }
+}
+
+impl<S: Simd> std::ops::AddAssign for Vec3x8<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+/// The sum over the lanes, from the first to the last.
+#[inline(always)]
+pub(crate) fn sum<S: Simd>(lanes: f64x8<S>) -> f64 {
+    <[f64; LANES]>::from(lanes).iter().sum()
+}
+
+/// The largest of the lanes, none of them NaN, or zero.
+#[inline(always)]
+pub(crate) fn largest<S: Simd>(lanes: f64x8<S>) -> f64 {
+    <[f64; LANES]>::from(lanes).iter().fold(0.0, |m: f64, &lane| m.max(lane))
+}
+
+/// Where a lane is above zero, itself; else zero.
+#[inline(always)]
+pub(crate) fn positive<S: Simd>(simd: S, lanes: f64x8<S>) -> f64x8<S> {
+    let zero = f64x8::splat(simd, 0.0);
+    lanes.simd_gt(zero).select(lanes, zero)
+}
+
+/// Every level of SIMD that this processor offers, the widest first.
+#[cfg(test)]
+pub(crate) fn levels() -> Vec<fearless_simd::Level> {
+    use fearless_simd::Level;
+    let best = Level::new();
+    #[cfg(target_arch = "x86_64")]
+    let narrower = [best.as_avx2().map(Level::Avx2), best.as_sse4_2().map(Level::Sse4_2)];
+    #[cfg(not(target_arch = "x86_64"))]
+    let narrower = [None; 2];
+    [Some(best)].into_iter().chain(narrower).flatten().chain([Level::baseline()]).collect()
+}

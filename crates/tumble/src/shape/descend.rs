@@ -1,0 +1,260 @@
+//! What is asked of the tree: sums over the particles behind walls, the deepest of them, and which they are.
+
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use glam::DVec3;
+
+use super::particles::{Group, Particles};
+use super::tree::{Branch, Node, Ramp, Side};
+use crate::lanes::{LANES, Vec3x8, largest, positive, sum};
+
+/// Branches that can wait at once: a tree of 2³² particles is no deeper.
+const WAITING: usize = 32;
+
+/// Sums of a ramp f over some particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct RampSums {
+    /// Σ f.
+    pub sum: f64,
+    /// Σ f r.
+    pub moment: DVec3,
+    /// Σ f².
+    pub squares: f64,
+}
+
+impl Particles {
+    /// Sums of `ramp` over the particles where it is above zero, and `within` too if there is one.
+    pub(crate) fn sums(&self, level: Level, ramp: &Ramp, within: Option<&Ramp>) -> RampSums {
+        match within {
+            None => dispatch!(level, simd => self.sums_in(simd, ramp, &[])),
+            Some(within) => dispatch!(level, simd => self.sums_in(simd, ramp, &[*within])),
+        }
+    }
+
+    #[inline(always)]
+    fn sums_in<S: Simd, const N: usize>(
+        &self,
+        simd: S,
+        ramp: &Ramp,
+        within: &[Ramp; N],
+    ) -> RampSums {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut whole = RampSums::default();
+                let mut lanes = LaneSums::zero(simd);
+                let mut waiting = Waiting::new(self.nodes());
+                while let Some((branch, _)) = waiting.next() {
+                    let node = &self.nodes()[branch.node as usize];
+                    let mut side = node.side(ramp, branch.is_leaf());
+                    for ramp in within {
+                        side = side.and(node.side(ramp, branch.is_leaf()));
+                    }
+                    match side {
+                        Side::Outside => {}
+                        Side::Inside => whole.add(node, ramp),
+                        Side::Cut => match branch.children() {
+                            Some([a, b]) => waiting.both((a, 0.0), (b, 0.0)),
+                            None => {
+                                for group in self.groups(simd, branch) {
+                                    lanes.add(simd, &group, ramp, within);
+                                }
+                            }
+                        },
+                    }
+                }
+                whole.plus(&lanes)
+            },
+        )
+    }
+
+    /// The largest value of `ramp` over the particles, or zero where it is nowhere above, up to rounding.
+    pub(crate) fn largest(&self, level: Level, ramp: &Ramp) -> f64 {
+        dispatch!(level, simd => self.largest_in(simd, ramp))
+    }
+
+    #[inline(always)]
+    fn largest_in<S: Simd>(&self, simd: S, ramp: &Ramp) -> f64 {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let values = Spread::over(simd, ramp);
+                let mut best = 0.0f64;
+                let mut waiting = Waiting::new(self.nodes());
+                while let Some((branch, most)) = waiting.next() {
+                    // a box that ends on its particle may be a rounding above it
+                    let rounding = 4.0 * f64::EPSILON * (ramp.offset.abs() + best);
+                    if most <= best + rounding {
+                        continue;
+                    }
+                    match branch.children() {
+                        Some([a, b]) => {
+                            let (of_a, of_b) = (self.most(a, ramp), self.most(b, ramp));
+                            if of_a < of_b {
+                                waiting.both((b, of_b), (a, of_a));
+                            } else {
+                                waiting.both((a, of_a), (b, of_b));
+                            }
+                        }
+                        None => {
+                            for group in self.groups(simd, branch) {
+                                best = best.max(largest(values.real(simd, &group)));
+                            }
+                        }
+                    }
+                }
+                best
+            },
+        )
+    }
+
+    /// Appends the slots of all particles where `ramp` is above zero, in their order.
+    pub(crate) fn list_positive(&self, level: Level, ramp: &Ramp, slots: &mut Vec<u32>) {
+        dispatch!(level, simd => self.list_positive_in(simd, ramp, slots));
+    }
+
+    #[inline(always)]
+    fn list_positive_in<S: Simd>(&self, simd: S, ramp: &Ramp, slots: &mut Vec<u32>) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let values = Spread::over(simd, ramp);
+                let mut waiting = Waiting::new(self.nodes());
+                while let Some((branch, _)) = waiting.next() {
+                    let node = &self.nodes()[branch.node as usize];
+                    match (node.side(ramp, branch.is_leaf()), branch.children()) {
+                        (Side::Outside, _) => {}
+                        (Side::Cut, Some([a, b])) => waiting.both((a, 0.0), (b, 0.0)),
+                        _ => {
+                            for group in self.groups(simd, branch) {
+                                let values = values.real(simd, &group);
+                                let above = values.simd_gt(f64x8::splat(simd, 0.0));
+                                let mut bits = above.to_bitmask();
+                                while bits != 0 {
+                                    slots.push(group.first + bits.trailing_zeros());
+                                    bits &= bits - 1;
+                                }
+                            }
+                        }
+                    }
+                }
+            },
+        );
+    }
+
+    #[inline(always)]
+    fn most(&self, branch: Branch, ramp: &Ramp) -> f64 {
+        self.nodes()[branch.node as usize].most(ramp)
+    }
+}
+
+/// The branches still to be visited, the next one last, each with a number to remember.
+struct Waiting {
+    branches: [(Branch, f64); WAITING],
+    count: usize,
+}
+
+impl Waiting {
+    #[inline(always)]
+    fn new(nodes: &[Node]) -> Self {
+        let mut branches = [(Branch::default(), 0.0); WAITING];
+        branches[0] = (Branch::root(nodes), f64::INFINITY);
+        Self { branches, count: usize::from(!nodes.is_empty()) }
+    }
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<(Branch, f64)> {
+        self.count = self.count.checked_sub(1)?;
+        Some(self.branches[self.count])
+    }
+
+    /// Both are to be visited, the first of them first.
+    #[inline(always)]
+    fn both(&mut self, first: (Branch, f64), second: (Branch, f64)) {
+        self.branches[self.count] = second;
+        self.branches[self.count + 1] = first;
+        self.count += 2;
+    }
+}
+
+impl RampSums {
+    /// Adds all particles of a node: f(r) = f(r̄) − slope·(r − r̄), and Σ (r − r̄) = 0.
+    #[inline(always)]
+    fn add(&mut self, node: &Node, ramp: &Ramp) {
+        let mean = ramp.at(node.mean);
+        let turned = node.spread_times(ramp.slope);
+        self.sum += node.count * mean;
+        self.moment += node.mean * (node.count * mean) - turned;
+        self.squares += node.count * mean * mean + ramp.slope.dot(turned);
+    }
+
+    #[inline(always)]
+    fn plus<S: Simd>(self, lanes: &LaneSums<S>) -> Self {
+        Self {
+            sum: self.sum + sum(lanes.sum),
+            moment: self.moment + lanes.moment.sum(),
+            squares: self.squares + sum(lanes.squares),
+        }
+    }
+}
+
+/// [`RampSums`], eight side by side.
+struct LaneSums<S: Simd> {
+    sum: f64x8<S>,
+    moment: Vec3x8<S>,
+    squares: f64x8<S>,
+}
+
+impl<S: Simd> LaneSums<S> {
+    #[inline(always)]
+    fn zero(simd: S) -> Self {
+        let zero = f64x8::splat(simd, 0.0);
+        Self { sum: zero, moment: Vec3x8::splat(simd, DVec3::ZERO), squares: zero }
+    }
+
+    #[inline(always)]
+    fn add<const N: usize>(&mut self, simd: S, group: &Group<S>, ramp: &Ramp, within: &[Ramp; N]) {
+        let zero = f64x8::splat(simd, 0.0);
+        let mut value = positive(simd, Spread::over(simd, ramp).real(simd, group));
+        for ramp in within {
+            let counts = Spread::over(simd, ramp).at(group.place).simd_gt(zero);
+            value = counts.select(value, zero);
+        }
+        self.sum += value;
+        self.moment += group.place * value;
+        self.squares += value * value;
+    }
+}
+
+/// A ramp, the same in each lane.
+struct Spread<S: Simd> {
+    offset: f64x8<S>,
+    slope: Vec3x8<S>,
+}
+
+impl<S: Simd> Spread<S> {
+    #[inline(always)]
+    fn over(simd: S, ramp: &Ramp) -> Self {
+        Self { offset: f64x8::splat(simd, ramp.offset), slope: Vec3x8::splat(simd, ramp.slope) }
+    }
+
+    #[inline(always)]
+    fn at(&self, place: Vec3x8<S>) -> f64x8<S> {
+        self.offset - self.slope.dot(place)
+    }
+
+    /// The values of the particles, and zero where there is none.
+    #[inline(always)]
+    fn real(&self, simd: S, group: &Group<S>) -> f64x8<S> {
+        let values = self.at(group.place);
+        if group.count == LANES {
+            return values;
+        }
+        let mut values: [f64; LANES] = values.into();
+        values[group.count..].fill(0.0);
+        f64x8::simd_from(simd, values)
+    }
+}
+
+#[cfg(test)]
+#[path = "descend_tests.rs"]
+mod tests;

@@ -1,0 +1,137 @@
+//! The tree against a plain loop over the particles.
+
+use glam::{DMat3, DQuat};
+use proptest::prelude::*;
+
+use super::*;
+use crate::lanes::levels;
+
+/// The same sums, one particle after the other.
+fn plain(places: &[DVec3], ramp: &Ramp, within: Option<&Ramp>) -> (RampSums, f64) {
+    let (mut sums, mut largest) = (RampSums::default(), 0.0f64);
+    for &place in places {
+        let value = ramp.at(place);
+        if value > 0.0 && within.is_none_or(|within| within.at(place) > 0.0) {
+            sums.sum += value;
+            sums.moment += place * value;
+            sums.squares += value * value;
+        }
+        largest = largest.max(value);
+    }
+    (sums, largest)
+}
+
+/// Points of some kind: a cloud, a skin, a plane in any direction, a line, a few places many times.
+fn places(kind: u8, count: usize, seeds: &[DVec3]) -> Vec<DVec3> {
+    let turn =
+        DMat3::from_quat(DQuat::from_rotation_arc(DVec3::X, seeds[0].normalize_or(DVec3::X)));
+    let one = |i: usize| {
+        // a cheap, even filling of the cube from −1 to 1
+        let spread = |factor: f64| 2.0 * ((i as f64 + 1.0) * factor).fract() - 1.0;
+        let p = DVec3::new(spread(0.819_172_513), spread(0.671_043_607), spread(0.549_700_478));
+        match kind {
+            0 => p,
+            1 => p.normalize_or(DVec3::X),
+            2 => turn * DVec3::new(0.3, p.y, p.z),
+            3 => turn * DVec3::new(p.x, 0.2, -0.1),
+            _ => seeds[i % seeds.len()],
+        }
+    };
+    (0..count).map(one).collect()
+}
+
+fn vector() -> impl Strategy<Value = DVec3> {
+    [-1.0..1.0f64, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from_array)
+}
+
+fn check(places: &[DVec3], ramp: &Ramp, within: Option<&Ramp>) -> Result<(), TestCaseError> {
+    let particles = Particles::new(places.iter().copied());
+    let (expected, largest) = plain(places, ramp, within);
+    // what is in play: the forces that add up, and the rounding of their arguments
+    let reach = places.iter().fold(0.0f64, |m, p| m.max(p.length()));
+    let size = ramp.offset.abs() + ramp.slope.length() * reach;
+    let play = 1e-12 * expected.sum + 1e-15 * size * places.len() as f64;
+    let best = particles.sums(levels()[0], ramp, within);
+    prop_assert!((best.sum - expected.sum).abs() <= play, "{best:?} {expected:?}");
+    prop_assert!((best.moment - expected.moment).length() <= play * reach, "{best:?} {expected:?}");
+    prop_assert!((best.squares - expected.squares).abs() <= play * size, "{best:?} {expected:?}");
+    let found = particles.largest(levels()[0], ramp);
+    prop_assert!((found - largest).abs() <= 1e-14 * size, "{found} {largest}");
+    // which particles: all that are clearly behind, none that is clearly before
+    let mut slots = Vec::new();
+    particles.list_positive(levels()[0], ramp, &mut slots);
+    prop_assert!(slots.is_sorted_by(|a, b| a < b));
+    prop_assert!(slots.iter().all(|&slot| ramp.at(particles.at(slot)) > 0.0));
+    let clear = places.iter().filter(|p| ramp.at(**p) > 1e-7 * size).count();
+    prop_assert!(slots.len() >= clear, "{} {clear}", slots.len());
+    // the same bits in registers of any width
+    for level in levels() {
+        prop_assert_eq!(particles.sums(level, ramp, within), best, "{:?}", level);
+        prop_assert_eq!(particles.largest(level, ramp), found, "{:?}", level);
+        let mut again = Vec::new();
+        particles.list_positive(level, ramp, &mut again);
+        prop_assert_eq!(&again, &slots, "{:?}", level);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn sums_are_those_of_a_plain_loop(
+        kind in 0u8..5,
+        count in prop_oneof![1usize..40, 100usize..3000],
+        seeds in prop::collection::vec(vector(), 3),
+        slope in vector(),
+        offset in -1.5..1.5f64,
+        other in prop::option::of((vector(), -1.0..1.0f64)),
+        on_a_particle in any::<bool>(),
+    ) {
+        let places = places(kind, count, &seeds);
+        let mut ramp = Ramp { offset, slope };
+        if on_a_particle {
+            ramp.offset = slope.dot(places[count / 2]);
+        }
+        let other = other.map(|(slope, offset)| Ramp { offset, slope });
+        check(&places, &ramp, other.as_ref())?;
+    }
+
+    #[test]
+    fn a_flat_face_on_a_wall_counts_whole(
+        seed in vector(),
+        depth in prop_oneof![Just(0.0), 1e-6..1e-3f64],
+    ) {
+        let places = places(2, 5000, &[seed]);
+        let normal = seed.normalize_or(DVec3::X);
+        check(&places, &Ramp { offset: 0.3 + depth, slope: normal }, None)?;
+    }
+}
+
+#[test]
+fn a_million_particles_agree_with_a_plain_loop() {
+    let places = places(1, 1_000_000, &[DVec3::X]);
+    let slope = DVec3::new(0.36, -0.48, 0.8);
+    check(&places, &Ramp { offset: -0.9, slope }, None).unwrap();
+    let other = Ramp { offset: 0.1, slope: DVec3::new(0.1, 0.9, -0.2) };
+    check(&places, &Ramp { offset: 0.2, slope }, Some(&other)).unwrap();
+}
+
+#[test]
+fn a_tilted_flat_face_is_not_opened_to_its_particles() {
+    // by its box alone, a tilted face is as thick as it is wide
+    let places = places(2, 100_000, &[DVec3::new(1.0, 1.0, 1.0)]);
+    let slope = DVec3::ONE.normalize();
+    let particles = Particles::new(places.iter().copied());
+    let root = &particles.nodes()[0];
+    assert_eq!(root.side(&Ramp { offset: 0.3 + 1e-4, slope }, false), Side::Inside);
+    assert_eq!(root.side(&Ramp { offset: 0.3 - 1e-4, slope }, false), Side::Outside);
+}
+
+#[test]
+fn no_particle_no_sum() {
+    let none = Particles::default();
+    let ramp = Ramp { offset: 1.0, slope: DVec3::X };
+    assert_eq!(none.sums(levels()[0], &ramp, None), RampSums::default());
+    assert_eq!(none.largest(levels()[0], &ramp), 0.0);
+}
