@@ -67,6 +67,7 @@ pub use shape::{
     Sampling, Shape, ShapeError, ShellError,
 };
 pub use stability::{CriticalStep, critical_dt};
+pub use stage::Pull;
 pub use state::{BodyState, FrictionSpring, State, Tally};
 pub use wall::{WallBox, WallPlane};
 pub use world::{BodyView, World};

@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use crate::stage::{self, Pull};
 use crate::{
     BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError, WorldBuilder,
     step::step,
@@ -13,6 +14,9 @@ pub struct World {
     model: Model,
     state: State,
     scratch: Scratch,
+    /// A hand on a particle; not part of the state, since nothing in the world says where it goes.
+    pull: Option<Pull>,
+    pulled: f64,
 }
 
 impl World {
@@ -22,7 +26,7 @@ impl World {
     }
 
     pub(crate) fn of(model: Model, state: State) -> Self {
-        Self { model, state, scratch: Scratch::default() }
+        Self { model, state, scratch: Scratch::default(), pull: None, pulled: 0.0 }
     }
 
     /// Advances time by one step of [`World::dt`].
@@ -30,7 +34,33 @@ impl World {
     /// # Errors
     /// [`StepError`] when the new state cannot be trusted; the world then keeps it, for inspection.
     pub fn step(&mut self) -> Result<(), StepError> {
-        step(&self.model, &mut self.state, &mut self.scratch)
+        let Some(hand) = self.pull else {
+            return step(&self.model, &mut self.state, &mut self.scratch);
+        };
+        // half of the pull before and half after: still of second order
+        let h = 0.5 * self.model.dt;
+        self.pulled += stage::pull(&self.model, &mut self.state, &hand, h);
+        step(&self.model, &mut self.state, &mut self.scratch)?;
+        self.pulled += stage::pull(&self.model, &mut self.state, &hand, h);
+        Ok(())
+    }
+
+    /// Pulls a particle towards a place from the next step on, or lets go. Returns whether there is such a
+    /// particle, and such a place; if not, nothing changes.
+    pub fn pull(&mut self, hand: Option<Pull>) -> bool {
+        let fits = hand.is_none_or(|Pull { body, particle, target }| {
+            let body = self.model.bodies.get(body);
+            body.is_some_and(|body| particle < body.shape.particles().len()) && target.is_finite()
+        });
+        if fits {
+            self.pull = hand;
+        }
+        fits
+    }
+
+    /// The work of all pulls so far (J): what [`World::energy`] has gained by them.
+    pub fn pulled(&self) -> f64 {
+        self.pulled
     }
 
     /// Goes on from `state`, as a checkpoint holds it: every step from here on gives the bits that it

@@ -7,6 +7,7 @@ mod euler;
 mod fly;
 mod gravity;
 mod kick;
+mod pull;
 mod reach;
 mod refine;
 
@@ -18,5 +19,6 @@ pub use euler::euler;
 pub use fly::{cruise, fly};
 pub use gravity::gravity;
 pub use kick::kick;
+pub use pull::{Pull, pull};
 pub use reach::reach;
 pub use refine::refine;
