@@ -15,7 +15,7 @@ import { byId, element } from './dom.js';
 import { length, scale } from './math.js';
 import { helpDialog } from './keys.js';
 import { pickBody } from './pick.js';
-import { quantity } from './format.js';
+import { count, quantity } from './format.js';
 
 // of more bodies only the selected one leaves a path
 const MANY_PATHS = 64;
@@ -75,8 +75,8 @@ export class App {
     const { name, description, duration, live, bodies } = this.head;
     byId('name').textContent = name;
     byId('description').textContent = description ?? '';
-    const count = bodies.length === 1 ? 'one body' : `${bodies.length} bodies`;
-    byId('facts').textContent = live ? `${count}, running now` : `${count}, ${quantity(this.film.end || duration, 's')}`;
+    const many = bodies.length === 1 ? 'one body' : `${count(bodies.length)} bodies`;
+    byId('facts').textContent = live ? `${many}, running now` : `${many}, ${quantity(this.film.end || duration, 's')}`;
     document.title = `${name} – tumble`;
   }
 
@@ -225,7 +225,7 @@ export class App {
       pathColour: (body) => [...scene.bodies.colours[body], body === this.selected ? 1 : alpha],
       arrows,
       ellipsoids: moment.frame ? overlays.ellipsoids(moment, this.selected) : [],
-      thickness: 0.0042 * this.camera.distance,
+      thickness: 0.0062 * this.camera.breadth(),
       thread: this.grab?.thread(this.head, moment) ?? null,
     });
   }
@@ -376,9 +376,9 @@ export class App {
   }
 
   selectNext(by) {
-    const { length: count } = this.head.bodies;
+    const { length: all } = this.head.bodies;
     const from = this.selected ?? (by > 0 ? -1 : 0);
-    this.select((from + by + count) % count);
+    this.select((from + by + all) % all);
   }
 
   follow() {

@@ -1,7 +1,7 @@
 // What the arrows mean: quantities, colours, scales, and which bodies carry them.
 
 import { AT } from './data.js';
-import { add, isFiniteVector, length, multiplyQuaternions, scale } from './math.js';
+import { add, conjugate, cross, dot, isFiniteVector, length, multiplyQuaternions, rotate, scale } from './math.js';
 import { rgb } from './palette.js';
 
 // `colour` for light and dark; `value(body, moment, head)` in world axes
@@ -15,12 +15,15 @@ export const QUANTITIES = [
     value: (body, moment) => moment.vector(body, AT.force),
   },
   {
-    key: 'force', label: 'Weight + contact', symbol: 'F', unit: 'N', colour: { light: '#2b3036', dark: '#f2f4f6' },
-    value: (body, moment, head) => add(scale(head.gravity, head.bodies[body].mass), moment.vector(body, AT.force)),
+    key: 'force', label: 'Total force', symbol: 'F', unit: 'N', colour: { light: '#2b3036', dark: '#f2f4f6' },
+    value: (body, moment, head) => {
+      const weight = scale(head.gravity, head.bodies[body].mass);
+      return add(add(weight, moment.vector(body, AT.force)), drag(body, moment, head).force);
+    },
   },
   {
-    key: 'torque', label: 'Contact torque', symbol: 'τ', unit: 'N·m', colour: { light: '#b0568d', dark: '#dd94c0' },
-    value: (body, moment) => moment.vector(body, AT.torque),
+    key: 'torque', label: 'Total torque', symbol: 'τ', unit: 'N·m', colour: { light: '#b0568d', dark: '#dd94c0' },
+    value: (body, moment, head) => add(moment.vector(body, AT.torque), drag(body, moment, head).torque),
   },
   {
     key: 'velocity', label: 'Velocity', symbol: 'v', unit: 'm/s', colour: { light: '#3d9ad1', dark: '#6fc3f2' },
@@ -35,6 +38,28 @@ export const QUANTITIES = [
     value: (body, moment) => moment.vector(body, AT.spin),
   },
 ];
+
+const NONE = { force: [0, 0, 0], torque: [0, 0, 0] };
+
+// What the medium does: the sum of −c v over all particles, about the centre of mass.
+function drag(body, moment, head) {
+  const c = head.velocity_damping_stiffness ?? 0;
+  if (c === 0) return NONE;
+  const { shape, particle_mass: mass } = head.bodies[body];
+  const { particle_count: count, first, second } = head.shapes[shape];
+  const v = moment.vector(body, AT.velocity);
+  // equal particles that carry the mass: both momenta fade at one rate
+  if (!second) return { force: scale(v, -c * count), torque: scale(moment.vector(body, AT.momentum), -c / mass) };
+  const q = moment.turnOf(body);
+  const spin = moment.vector(body, AT.spin);
+  const arm = rotate(q, first);
+  const own = rotate(conjugate(q), spin);
+  const turned = rotate(q, [0, 3, 6].map((row) => dot(second.slice(row, row + 3), own)));
+  return {
+    force: scale(add(scale(v, count), cross(spin, arm)), -c),
+    torque: scale(add(turned, cross(arm, v)), -c),
+  };
+}
 
 // with so many bodies only the selected one carries arrows
 const FEW = 6;
@@ -57,7 +82,7 @@ export class Overlays {
   }
 
   learn(frame, moment) {
-    const look = { frame, vector: moment.vector };
+    const look = { frame, vector: moment.vector, turnOf: moment.turnOf };
     for (const quantity of QUANTITIES) {
       for (let body = 0; body < this.head.bodies.length; body++) {
         const l = length(quantity.value(body, look, this.head));
