@@ -1,6 +1,6 @@
 // The page as one thing: what is shown, at which time, seen from where, and what happens next.
 
-import { AT, Film, Moment, decodeHead } from './data.js';
+import { Film, Moment, decodeHead } from './data.js';
 import { Camera, steer } from './camera.js';
 import { Overlays } from './overlays.js';
 import { Panel } from './panel.js';
@@ -12,7 +12,6 @@ import { Table } from './table.js';
 import { Timeline } from './timeline.js';
 import { bodyColours } from './bodies.js';
 import { byId, element } from './dom.js';
-import { length, scale } from './math.js';
 import { helpDialog } from './keys.js';
 import { pickBody } from './pick.js';
 import { count, quantity } from './format.js';
@@ -295,11 +294,11 @@ export class App {
     this.request();
   }
 
+  // the scale of the particles' colours
   learnForces() {
-    if (!this.scene) return;
-    const lightest = Math.min(...this.head.bodies.map((body) => body.particle_mass));
-    const weight = lightest * length(this.head.gravity);
-    this.scene.bodies.strongest = Math.max(0.3 * this.overlays.largest.contact, 10 * weight, 1e-9);
+    if (!this.scene || (this.hardest && this.hardest === this.overlays.hardest)) return;
+    this.hardest = this.overlays.hardest;
+    this.scene.bodies.strongest = Math.max(this.overlays.strongestOnParticle(), 1e-9);
   }
 
   // what keys and buttons do
@@ -455,16 +454,20 @@ export class App {
 
   // what tests and the curious may ask
   api() {
+    const now = () => {
+      this.moment.set(this.film, this.player.time);
+      return this.moment;
+    };
     return {
-      project: (body) => this.camera.project(this.view(), this.moment.position(body)),
+      seek: (time) => this.player.seek(time),
+      position: (body) => now().position(body),
+      project: (body) => this.camera.project(this.view(), now().position(body)),
+      // red, green, blue, alpha of the picture at a place in CSS pixels
       pixel: (x, y) => {
+        now();
         this.draw();
         return this.scene?.pixel(x, y) ?? null;
       },
-      position: (body) => this.moment.position(body),
-      force: (body) => this.moment.vector(body, AT.force),
-      seek: (time) => this.player.seek(time),
-      weight: (body) => scale(this.head.gravity, this.head.bodies[body].mass),
       app: this,
     };
   }

@@ -97,10 +97,10 @@ export class Panel {
     this.carrier.textContent = carriers.length ? '' : 'Select a body: it will carry the arrows.';
     this.carrier.hidden = carriers.length > 0;
     for (const row of document.querySelectorAll('.check.arrow')) {
-      const { colour } = QUANTITIES.find(({ key }) => key === row.dataset.key);
+      const shown = QUANTITIES.find(({ key }) => key === row.dataset.key);
+      const { colour, label, unit } = shown;
       row.style.setProperty('--c', colour[app.themeName]);
-      const metres = app.overlays.metres(row.dataset.key);
-      const { label, unit } = QUANTITIES.find(({ key }) => key === row.dataset.key);
+      const metres = app.overlays.metres(shown, carriers);
       row.title = metres > 0 ? `${label}: an arrow of 1 m stands for ${quantity(1 / metres, unit, 2)}` : `${label}: zero so far`;
     }
     this.ramp.hidden = !app.shows.particles || !app.head.walls.length;
