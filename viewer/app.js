@@ -97,7 +97,7 @@ export class App {
   // once: the canvas and the window
   listen() {
     const { canvas } = this;
-    steer(canvas, this.cameraProxy(), {
+    const pointers = steer(canvas, this.cameraProxy(), {
       changed: () => this.moved(),
       panned: () => this.unfollow(),
       hover: (at) => this.hover(at),
@@ -106,6 +106,7 @@ export class App {
       drag: (at) => this.grab?.move(this.rayAt(at), this.view().back),
       up: () => this.grab?.end(),
     });
+    this.isHeld = pointers.isHeld;
     canvas.addEventListener('dblclick', () => this.whole());
     canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
     canvas.addEventListener('webglcontextrestored', () => {
@@ -179,7 +180,9 @@ export class App {
       this.dirty = false;
       this.show();
     }
-    const goesOn = this.player.playing;
+    const goesOn = this.player.playing || (this.link?.status.playing ?? false);
+    clearTimeout(this.still);
+    if (!goesOn && this.scene?.isCoarse) this.still = setTimeout(() => this.drawFine(), 350);
     if (goesOn && since) this.scene?.time(since);
     this.last = goesOn ? now : 0;
     if (goesOn || this.dirty) this.request();
@@ -229,6 +232,14 @@ export class App {
     });
   }
 
+  // a picture that stands still may take its time
+  drawFine() {
+    if (this.asked || this.isHeld()) return;
+    this.scene.fine = true;
+    this.draw();
+    this.scene.fine = false;
+  }
+
   updatePaths() {
     const { film, scene } = this;
     const { bodies } = this.head;
@@ -237,7 +248,7 @@ export class App {
     const key = `${wanted.length} ${wanted[0]} ${film.length} ${film.end} ${film.dropped}`;
     if (made && made.key === key) return;
     const now = performance.now();
-    if (made && this.head.live && now - made.at < 200 && made.film === film && film.length >= made.made) return;
+    if (made && this.head.live && now - made.at < 200 && made.film === film && made.made > 1 && film.length >= made.made) return;
     scene.lines.setPaths(film, wanted);
     Object.assign(scene.lines.paths, { key, at: now, film });
   }
@@ -273,7 +284,8 @@ export class App {
   liveFrame(buffer) {
     const { film } = this;
     if (!film.push(buffer)) return;
-    this.overlays.learn(film.frames.at(-1), this.moment);
+    // of a crowd a look now and then will do
+    if (this.head.bodies.length < 200 || film.length % 10 === 1) this.overlays.learn(film.frames.at(-1), this.moment);
     this.learnForces();
     if (film.length === 1 && !this.ownView && !this.head.box) this.seeAround();
     this.dirty = true;

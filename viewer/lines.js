@@ -96,7 +96,7 @@ export class Lines {
   // up to the moment that is shown
   drawPaths(view, ratio, moment, film, colourOf) {
     const { gl, paths } = this;
-    if (!paths || !moment.frame) return;
+    if (!paths || !moment.frame || paths.each < 1) return;
     this.begin(view, [view.width * ratio, view.height * ratio]);
     const done = Math.min(Math.floor(moment.index / paths.every), paths.each - 1);
     paths.bodies.forEach((body, b) => {

@@ -18,6 +18,8 @@ const LEVELS = [
 ];
 // of so many triangles a slow machine draws rough bodies
 const HEAVY = 150000;
+// a picture that stands still is at least this fine
+const STILL = 2;
 const SLOW = 40; // ms
 const PATIENCE = 10; // frames
 
@@ -59,13 +61,14 @@ export class Scene {
     this.extent = extent(head, film);
     this.slow = 0;
     this.timed = 0;
+    this.fine = false;
     this.build();
   }
 
   build() {
     const { gl, head } = this;
     // of a context that was lost and came back, nothing is left
-    this.shadow = null;
+    this.shadows = new Map();
     this.bodies = new Bodies(gl, head);
     this.room = new Room(gl, head, this.extent);
     this.lines = new Lines(gl, head);
@@ -81,18 +84,29 @@ export class Scene {
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     // a picture in software is drawn with fewer pixels from the start
     if (this.software) this.level = Math.max(this.level, this.bodies.triangleCount > HEAVY ? LEVELS.length - 1 : 2);
-    this.makeShadow();
   }
 
   // before another scene takes the canvas; the browser frees what nothing holds any more
   dispose() {
-    freeShadowMap(this.gl, this.shadow);
-    this.shadow = null;
+    for (const map of this.shadows.values()) freeShadowMap(this.gl, map);
+    this.shadows.clear();
   }
 
-  makeShadow() {
-    if (this.shadow) freeShadowMap(this.gl, this.shadow);
-    this.shadow = shadowMap(this.gl, LEVELS[this.level].shadow);
+  // the map of the level that is drawn now, made when it is first needed
+  get shadow() {
+    const { shadow: size } = LEVELS[this.now];
+    if (!this.shadows.has(size)) this.shadows.set(size, shadowMap(this.gl, size));
+    return this.shadows.get(size);
+  }
+
+  // the level of the picture that is drawn now
+  get now() {
+    return this.fine ? Math.min(this.level, STILL) : this.level;
+  }
+
+  // whether a picture that stands still could be finer
+  get isCoarse() {
+    return this.level > STILL && this.bodies.triangleCount <= HEAVY;
   }
 
   setExtent(bounds) {
@@ -110,11 +124,10 @@ export class Scene {
     if (this.slow < PATIENCE || this.level === LEVELS.length - 1) return;
     this.level += 1;
     this.slow = 0;
-    this.makeShadow();
   }
 
   get ratio() {
-    return Math.min(window.devicePixelRatio || 1, LEVELS[this.level].ratio);
+    return Math.min(window.devicePixelRatio || 1, LEVELS[this.now].ratio);
   }
 
   resize(width, height) {
@@ -142,7 +155,7 @@ export class Scene {
     ortho[15] = 1;
     view.sun = sun;
     view.lightMatrix = multiply(ortho, viewOf(centre, right, upward, sun));
-    view.taps = dot(up, up) > 0 ? LEVELS[this.level].taps : 0;
+    view.taps = dot(up, up) > 0 ? LEVELS[this.now].taps : 0;
     view.softness = 0.0075;
     view.texel = (3.2 * reach) / this.shadow.size;
   }
@@ -151,7 +164,7 @@ export class Scene {
   draw(view, moment, film, shows) {
     const { gl, bodies } = this;
     this.light(view);
-    bodies.isRough = this.level === LEVELS.length - 1 && bodies.triangleCount > HEAVY;
+    bodies.isRough = this.now === LEVELS.length - 1 && bodies.triangleCount > HEAVY;
     view.theme = shows.theme;
     if (moment.frame) bodies.place(moment, shows.emphasis);
     this.drawShadow(view, moment);
