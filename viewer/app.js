@@ -13,6 +13,7 @@ import { Timeline } from './timeline.js';
 import { bodyColours } from './bodies.js';
 import { byId, element } from './dom.js';
 import { helpDialog } from './keys.js';
+import { isFiniteVector } from './math.js';
 import { pickBody } from './pick.js';
 import { count, quantity } from './format.js';
 
@@ -47,7 +48,10 @@ export class App {
     this.player.addEventListener('change', () => this.changed());
     this.writeTitle();
     this.startPicture();
+    const { shown } = this.overlays ?? {};
     this.overlays = new Overlays(head, this.bounds.radius);
+    // another run in the same page: the same arrows
+    if (shown) this.overlays.shown = shown;
     this.overlays.scan(this.film, this.moment);
     this.learnForces();
     this.table = new Table(head, bodyColours(head), (body) => this.select(body));
@@ -75,7 +79,9 @@ export class App {
     byId('name').textContent = name;
     byId('description').textContent = description ?? '';
     const many = bodies.length === 1 ? 'one body' : `${count(bodies.length)} bodies`;
-    byId('facts').textContent = live ? `${many}, running now` : `${many}, ${quantity(this.film.end || duration, 's')}`;
+    const { frames_recorded: all, frame_count: kept } = this.head;
+    const thinned = all > kept ? `, ${count(kept)} of ${count(all)} frames` : '';
+    byId('facts').textContent = live ? `${many}, running now` : `${many}, ${quantity(this.film.end || duration, 's')}${thinned}`;
     document.title = `${name} – tumble`;
   }
 
@@ -192,7 +198,10 @@ export class App {
   show() {
     const { moment, player, film } = this;
     moment.set(film, player.time);
-    if (this.following !== null && moment.frame) this.camera.target = moment.position(this.following);
+    if (this.following !== null && moment.frame) {
+      const place = moment.position(this.following);
+      if (isFiniteVector(place)) this.camera.target = place;
+    }
     if (this.stale) {
       this.stale = false;
       this.panel.update();
@@ -260,10 +269,14 @@ export class App {
       this.labels.push(label);
       parent.append(label);
     }
+    const taken = [];
     this.labels.forEach((label, i) => {
       const at = arrows[i] && this.camera.project(view, arrows[i].tip);
       label.hidden = !at;
       if (!at) return;
+      // of arrows that end at one place the letters stand side by side
+      while (taken.some(([x, y]) => Math.abs(x - at[0]) < 18 && Math.abs(y - at[1]) < 14)) at[0] += 18;
+      taken.push(at);
       if (label.textContent !== arrows[i].symbol) label.textContent = arrows[i].symbol;
       label.style.color = arrows[i].css;
       label.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px)`;
@@ -300,7 +313,8 @@ export class App {
     this.camera.fit(this.bounds.centre, this.bounds.radius);
   }
 
-  liveStatus() {
+  liveStatus({ speed }) {
+    this.timeline.showSpeed(speed);
     this.stale = true;
     this.dirty = true;
     this.request();

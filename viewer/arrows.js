@@ -45,7 +45,7 @@ export class Arrows {
     // what a body hides is seen through it, faintly
     gl.depthMask(false);
     gl.depthFunc(gl.GREATER);
-    gl.uniform1f(this.arrow.at.strength, 0.3);
+    gl.uniform1f(this.arrow.at.strength, 0.42);
     gl.drawArraysInstanced(gl.TRIANGLES, 0, this.cornerCount, list.length);
     gl.depthMask(true);
     gl.depthFunc(gl.LEQUAL);

@@ -62,7 +62,7 @@ function drag(body, moment, head) {
 }
 
 // no arrow is longer than this part of the scene's size
-const LONGEST = 1;
+const LONGEST = 1.3;
 
 // with so many bodies only the selected one carries arrows
 const FEW = 6;
@@ -106,7 +106,7 @@ export class Overlays {
   metres({ key, scale: family }, carriers) {
     const largest = (of) => carriers.reduce((most, body) => Math.max(most, this.largest[of][body]), 0);
     const weight = family === 'force' ? largest('gravity') : 0;
-    if (weight > 0) return (this.factor * 0.2 * this.size) / weight;
+    if (weight > 0) return (this.factor * 0.27 * this.size) / weight;
     const most = largest(family ?? key);
     return most > 0 ? (this.factor * 0.5 * this.size) / most : 0;
   }

@@ -8,7 +8,7 @@ export function rgb(hex) {
 // the columns of the ledger, in the order of a frame
 export const LEDGER = [
   { name: 'kinetic', label: 'Kinetic', colour: '#0072b2' },
-  { name: 'gravitational', label: 'Gravitational', colour: '#e69f00' },
+  { name: 'gravitational', label: 'Gravitational', note: 'counted from its lowest value', colour: '#e69f00' },
   { name: 'elastic', label: 'In contact springs', colour: '#009e73' },
   { name: 'drag', label: 'Lost to drag', colour: '#56b4e9' },
   { name: 'dashpot', label: 'Lost to dashpots', colour: '#cc79a7' },

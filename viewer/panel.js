@@ -112,7 +112,9 @@ export class Panel {
   tick(moment) {
     const { app } = this;
     if (!moment.frame) return;
-    const [first] = app.overlays.carriers(app.selected);
+    // of several bodies the numbers would be unclear
+    const carriers = app.overlays.carriers(app.selected);
+    const first = carriers.length === 1 ? carriers[0] : undefined;
     for (const { key, value, unit } of QUANTITIES) {
       const node = this.values.get(key);
       const text = first === undefined || !app.overlays.shown.has(key) ? '' : quantity(length(value(first, moment, app.head)), unit);

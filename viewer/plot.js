@@ -181,12 +181,12 @@ export class Plot {
     if (shown === this.legendKey) return;
     this.legendKey = shown;
     this.values = new Map();
-    const item = (key, label, css) => {
+    const item = (key, label, css, note = '') => {
       const value = element('span', { className: 'value' });
       this.values.set(key, value);
-      return element('div', { className: 'item' }, element('i', { className: key === TOTAL ? 'swatch line' : 'swatch', css: { '--c': css } }), element('span', {}, label), value);
+      return element('div', { className: 'item', title: note }, element('i', { className: key === TOTAL ? 'swatch line' : 'swatch', css: { '--c': css } }), element('span', {}, label), value);
     };
-    const parts = LEDGER.map((part, k) => (used[k] ? item(k, part.label, part.colour) : null)).filter(Boolean);
+    const parts = LEDGER.map((part, k) => (used[k] ? item(k, part.label, part.colour, part.note) : null)).filter(Boolean);
     this.legend.replaceChildren(element('h2', {}, 'Energy'), item(TOTAL, 'Total', 'var(--ink)'), ...parts.reverse());
     const last = this.player.film.frames.at(-1);
     const drift = quantity(last.ledger[RESIDUAL], 'J', 2);

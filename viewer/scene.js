@@ -32,7 +32,7 @@ export function extent(head, film) {
       points.push(rotate(box.orientation, [0, 1, 2].map((k) => ((i >> k) & 1 ? box.max[k] : box.min[k]))));
     }
   }
-  const size = Math.max(...head.bodies.map((body) => head.shapes[body.shape].radius), 1e-6);
+  const size = head.shapes.reduce((most, shape) => Math.max(most, shape.radius), 1e-6);
   const reach = box ? 0.5 * length(sub(box.max, box.min)) : Infinity;
   const middle = box ? scale(points.reduce(add), 1 / 8) : [0, 0, 0];
   const step = Math.max(1, Math.floor(film.length / 400));
@@ -106,7 +106,7 @@ export class Scene {
 
   // whether a picture that stands still could be finer
   get isCoarse() {
-    return this.level > STILL && this.bodies.triangleCount <= HEAVY;
+    return (this.software || this.level > STILL) && this.bodies.triangleCount <= HEAVY;
   }
 
   setExtent(bounds) {
@@ -127,6 +127,8 @@ export class Scene {
   }
 
   get ratio() {
+    // without smooth edges of its own the picture is drawn larger and shown smaller
+    if (this.fine && this.software) return Math.max(window.devicePixelRatio || 1, 1.5);
     return Math.min(window.devicePixelRatio || 1, LEVELS[this.now].ratio);
   }
 

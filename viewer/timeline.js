@@ -60,6 +60,12 @@ export class Timeline {
     return this.speed.value === 'null' ? null : Number(this.speed.value);
   }
 
+  // what the server of a live run says
+  showSpeed(value) {
+    const text = String(value);
+    if (document.activeElement !== this.speed && [...this.speed.options].some((option) => option.value === text)) this.speed.value = text;
+  }
+
   toggleLoop() {
     this.player.loop = !this.player.loop;
     this.player.changed();

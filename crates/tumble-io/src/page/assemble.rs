@@ -97,9 +97,11 @@ fn page(title: &str, data: &str, connect: &str) -> String {
         "<meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n<title>{}</title>",
         escape(title)
     );
-    let mut html = PAGE.replacen(TITLE, &meta, 1);
-    html = html.replacen(STYLE_LINK, &format!("<style>{STYLE}</style>"), 1);
-    html.replacen(SCRIPT_LINK, &format!("{data}<script>{script}</script>"), 1)
+    let html = PAGE.replacen(TITLE, &meta, 1);
+    let html = html.replacen(STYLE_LINK, &format!("<style>{STYLE}</style>"), 1);
+    // the data may be large: they are copied once
+    let (before, after) = html.split_once(SCRIPT_LINK).unwrap_or((&html, ""));
+    [before, data, "<script>", &script, "</script>", after].concat()
 }
 
 fn hash(text: &str) -> String {
