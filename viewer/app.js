@@ -142,7 +142,8 @@ export class App {
     const dock = byId('dock').getBoundingClientRect();
     const beside = panel.width > 0 && panel.width < 0.6 * stage.width;
     const covered = beside ? stage.right - panel.left : 0;
-    this.camera.margin = { left: 0, right: covered, top: stage.width < 760 ? 40 : 0, bottom: Math.max(stage.bottom - dock.top, 0) };
+    const below = panel.width > 0 && !beside ? Math.min(dock.top, panel.top) : dock.top;
+    this.camera.margin = { left: 0, right: covered, top: stage.width < 760 ? 40 : 0, bottom: Math.max(stage.bottom - below, 0) };
     this.camera.size = [stage.width, stage.height];
     this.scene?.resize(stage.width, stage.height);
     if (!this.ownView) this.camera.fit(this.bounds.centre, this.bounds.radius);
