@@ -142,8 +142,7 @@ async function panel(browser) {
   check('a click selects a body', chosen !== null, `${chosen}`);
   check('its row is marked', (await page.locator('.row[aria-selected="true"]').count()) === 1);
   for (const key of ['1', '2', '3', '4', '5', '6', '7', 'i', 'e', 'p']) await page.keyboard.press(key);
-  await page.waitForTimeout(200);
-  check('arrows carry their letters', (await page.locator('#labels span:visible').count()) >= 2);
+  await until('arrows carry their letters', page, () => document.querySelectorAll('#labels span:not([hidden])').length >= 2);
   await page.keyboard.press('c');
   check('C follows the body', await page.evaluate(() => tumble.app.following === tumble.app.selected));
   await page.locator('.scroll').focus();
