@@ -13,7 +13,7 @@ import { Timeline } from './timeline.js';
 import { bodyColours } from './bodies.js';
 import { byId, element } from './dom.js';
 import { helpDialog } from './keys.js';
-import { isFiniteVector } from './math.js';
+import { dot, isFiniteVector } from './math.js';
 import { pickBody } from './pick.js';
 import { count, quantity } from './format.js';
 
@@ -89,6 +89,8 @@ export class App {
     const { head, film } = this;
     this.bounds = extent(head, film);
     this.camera = new Camera(head.up);
+    const slope = head.walls.find(({ normal }) => dot(normal, head.up) > 0.1 && dot(normal, head.up) < 0.995);
+    if (slope) this.camera.faceSlope(slope.normal);
     if (this.support === 'none') {
       this.scene = null;
       const text = 'This browser has no WebGL2, so the bodies cannot be drawn here. The energy and the numbers of the bodies are shown all the same.';
@@ -117,6 +119,8 @@ export class App {
     canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
     canvas.addEventListener('webglcontextrestored', () => {
       this.scene?.build();
+      this.hardest = null;
+      this.learnForces();
       this.changed();
     });
     new ResizeObserver(() => this.layout()).observe(byId('stage'));

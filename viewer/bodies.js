@@ -25,8 +25,8 @@ export class Bodies {
     this.order = head.bodies.map((_, index) => index).sort((a, b) => head.bodies[a].shape - head.bodies[b].shape || a - b);
     this.colours = bodyColours(head);
     this.instanceBuffer = buffer(gl, this.instances, gl.ARRAY_BUFFER, gl.DYNAMIC_DRAW);
-    this.fillConstant();
     this.groups = head.shapes.map((shape, index) => this.group(shape, index));
+    this.fillConstant();
     this.walls = new Float32Array(4 * MOST_WALLS);
     this.stiffness = new Float32Array(MOST_WALLS);
     this.setWalls();
@@ -44,9 +44,10 @@ export class Bodies {
   fillConstant() {
     const { bodies } = this.head;
     this.order.forEach((body, slot) => {
-      const { moments } = bodies[body];
-      // two equal moments: the body looks the same all around, so it gets markings
-      const round = moments[2] > 0 && (moments[1] - moments[0] < 0.02 * moments[2] || moments[2] - moments[1] < 0.02 * moments[2]);
+      const { moments, shape } = bodies[body];
+      // two equal moments and many faces: the body looks the same all around, so it gets markings
+      const { mesh } = this.groups[shape];
+      const round = mesh && !mesh.fewFaces && moments[2] > 0 && (moments[1] - moments[0] < 0.02 * moments[2] || moments[2] - moments[1] < 0.02 * moments[2]);
       this.instances.set([...this.colours[body], round ? 1 : 0], FLOATS * slot + 8);
     });
   }
@@ -76,7 +77,7 @@ export class Bodies {
       attribute(gl, 1, 3, 24, 12);
       buffer(gl, index, gl.ELEMENT_ARRAY_BUFFER);
     });
-    return { array, count: index.length };
+    return { array, count: index.length, fewFaces: hasFewFaces(data) };
   }
 
   // of a shape with many triangles and many bodies
@@ -180,7 +181,7 @@ export class Bodies {
     gl.uniform1f(at.strongest, this.strongest);
     gl.uniform2f(at.viewport, pixels[0], pixels[1]);
     gl.uniform1f(at.zoom, view.zoom);
-    gl.uniform3fv(at.plain, view.theme.ink);
+    gl.uniform3fv(at.plain, view.theme.path);
     for (const group of this.groups) {
       const bare = !group.mesh;
       if (!group.count || !(all || bare)) continue;
@@ -190,6 +191,15 @@ export class Bodies {
       gl.drawArraysInstanced(gl.POINTS, 0, group.pointCount, group.count);
     }
   }
+}
+
+// whether all corners face one of a few directions, as those of a box do
+function hasFewFaces(data) {
+  const directions = new Set();
+  for (let at = 3; at < data.length && directions.size <= 14; at += 6) {
+    directions.add(Array.from(data.subarray(at, at + 3), (x) => Math.round(20 * x)).join(','));
+  }
+  return directions.size <= 14;
 }
 
 // A colour for each body; where there are many, one for each shape, in slightly different tones.

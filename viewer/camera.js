@@ -1,6 +1,6 @@
 // The camera turns about a target; mouse, touch and keys move it.
 
-import { add, clamp, cross, multiply, normalize, perpendicular, perspective, scale, transform, viewOf } from './math.js';
+import { add, clamp, cross, dot, multiply, normalize, perpendicular, perspective, scale, transform, viewOf } from './math.js';
 
 const FOV = (36 * Math.PI) / 180;
 const STEEPEST = 1.55;
@@ -18,6 +18,15 @@ export class Camera {
     this.size = [1, 1];
     // part of the picture that panels cover, in CSS pixels
     this.margin = { left: 0, right: 0, top: 0, bottom: 0 };
+  }
+
+  // looks along a slope, so that it is seen to be one
+  faceSlope(normal) {
+    const level = normalize(cross(normal, this.up));
+    const front = scale(this.north, -1);
+    const side = dot(level, front) < 0 ? scale(level, -1) : level;
+    this.yaw = Math.atan2(dot(side, this.east), dot(side, front)) + 0.3;
+    this.pitch = 0.2;
   }
 
   // looks at a ball of that radius from where it fits into the picture

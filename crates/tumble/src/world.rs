@@ -3,8 +3,8 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
-    BodyForces, BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError, Wrench,
-    WorldBuilder, step::step,
+    BodyForces, BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError,
+    WorldBuilder, Wrench, step::step,
 };
 
 /// A model and its state, and the means to advance it.

@@ -28,33 +28,9 @@ pub(super) struct Module {
 
 /// In an order in which each needs only those before it.
 pub(super) const MODULES: [Module; 27] = modules![
-    "math",
-    "format",
-    "dom",
-    "palette",
-    "data",
-    "geometry",
-    "gl",
-    "shaders",
-    "camera",
-    "bodies",
-    "room",
-    "lines",
-    "arrows",
-    "overlays",
-    "scene",
-    "pick",
-    "player",
-    "timeline",
-    "plot",
-    "table",
-    "panel",
-    "live",
-    "controls",
-    "grab",
-    "keys",
-    "app",
-    "main",
+    "math", "format", "dom", "palette", "data", "geometry", "gl", "shaders", "camera", "bodies",
+    "room", "lines", "arrows", "overlays", "scene", "pick", "player", "timeline", "plot", "table",
+    "panel", "live", "controls", "grab", "keys", "app", "main",
 ];
 
 const PAGE: &str = include_str!("../../../../viewer/index.html");

@@ -105,7 +105,8 @@ impl Head {
         let (shapes, shape_of) = shapes(world);
         let bodies = world.bodies().zip(shape_of).map(|(body, shape)| of_body(&body, shape));
         let gravity = scene.gravity;
-        let up = if gravity == DVec3::ZERO { DVec3::Y } else { -gravity.normalize_or(DVec3::NEG_Y) };
+        let up =
+            if gravity == DVec3::ZERO { DVec3::Y } else { -gravity.normalize_or(DVec3::NEG_Y) };
         Self {
             kind: "head",
             version: env!("CARGO_PKG_VERSION"),

@@ -108,7 +108,8 @@ fn modules_keep_the_form_that_makes_one_script_of_them() {
         let mut code = false;
         for line in module.text.lines() {
             if line.starts_with("import") {
-                let (names, from) = import(line).unwrap_or_else(|| panic!("{}: {line}", module.name));
+                let (names, from) =
+                    import(line).unwrap_or_else(|| panic!("{}: {line}", module.name));
                 assert!(before.contains(&from), "{} before {from}", module.name);
                 assert!(!names.contains(" as ") && !code, "{}: {line}", module.name);
                 let text = MODULES.iter().find(|other| other.name == from).unwrap().text;
