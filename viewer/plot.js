@@ -219,7 +219,7 @@ export class Plot {
       element('b', {}, `${Number(frame.time.toPrecision(6))} s`),
       ...rows.reverse().map(([part, value]) => element('div', {}, element('i', { className: 'swatch', css: { '--c': part.colour } }), `${part.label} ${quantity(value, 'J', 4)}`)),
       element('div', {}, `Total ${quantity(frame.ledger[TOTAL] - this.lowest, 'J', 5)}`),
-      element('div', { className: 'muted' }, `since the start ${quantity(frame.ledger[RESIDUAL], 'J', 2)}`),
+      element('div', { className: 'muted' }, `moved by ${quantity(frame.ledger[RESIDUAL], 'J', 2)} since the start`),
     );
     const right = at > this.width / 2;
     this.tip.style.left = right ? '' : `${at + 10}px`;
