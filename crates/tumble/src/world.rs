@@ -4,8 +4,8 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::stage::{self, Pull};
 use crate::{
-    BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError, WorldBuilder,
-    step::step,
+    BodyForces, BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError,
+    WorldBuilder, Wrench, step::step,
 };
 
 /// A model and its state, and the means to advance it.
@@ -115,6 +115,12 @@ impl World {
     /// All bodies, in the order in which they were added.
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = BodyView<'_>> {
         (0..self.body_count()).map(|index| self.body(index))
+    }
+
+    /// What the walls did to one body in the latest step, by spring, dashpot and friction together.
+    /// Zero before the first step, and for a body that touched nothing.
+    pub fn contact_wrench(&self, index: usize) -> Wrench {
+        self.scratch.forces.get(index).map_or_else(Wrench::default, BodyForces::contact)
     }
 
     /// Where the energy is, or went.
