@@ -4,7 +4,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
     BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError, WorldBuilder,
-    step::step,
+    Wrench, step::step,
 };
 
 /// A model and its state, and the means to advance it.
@@ -85,6 +85,11 @@ impl World {
     /// All bodies, in the order in which they were added.
     pub fn bodies(&self) -> impl ExactSizeIterator<Item = BodyView<'_>> {
         (0..self.body_count()).map(|index| self.body(index))
+    }
+
+    /// The contact force and torque of the latest step on one body, world axes (N, N·m); zero before the first.
+    pub fn contact_wrench(&self, index: usize) -> Wrench {
+        self.scratch.forces.get(index).map_or_else(Wrench::default, |forces| forces.contact())
     }
 
     /// Where the energy is, or went.
