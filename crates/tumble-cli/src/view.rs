@@ -28,6 +28,9 @@ pub struct ViewArgs {
     /// Change one key of the scene, e.g. dt=1e-4, collision.collision_stiffness=1e5, body.0.scale=0.5
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
+    /// Accept a dt above the critical one, at the start and from the page
+    #[arg(long)]
+    force: bool,
 }
 
 pub fn view(args: &ViewArgs) -> Result<(), Failure> {
@@ -39,7 +42,7 @@ pub fn view(args: &ViewArgs) -> Result<(), Failure> {
         }
         Some(page) => Show::Page(read_page(&page)?),
         None => {
-            let options = LoadOptions { sets: args.set.clone(), force: false };
+            let options = LoadOptions { sets: args.set.clone(), force: args.force };
             let session = Session::new(load_scene(&args.scene, &options)?);
             Show::Live(Box::new(session.map_err(|why| Failure::Call(format!("error: {why}")))?))
         }

@@ -34,9 +34,9 @@ pub struct Limits {
     pub head_time: Duration,
     /// Time for a page to take anything at all of what is sent to it.
     pub write_time: Duration,
-    /// After this long without anything to tell, a page is asked whether it is there.
+    /// So often a page is asked whether it is there.
     pub ping_after: Duration,
-    /// After this long without a word of it, it is not.
+    /// After this long without a word or an answer of it, it is not.
     pub silence: Duration,
     /// How many connections there may be at a time.
     pub connections: usize,

@@ -4,7 +4,7 @@ use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tungstenite::handshake::derive_accept_key;
 use tungstenite::protocol::frame::coding::CloseCode;
@@ -102,11 +102,19 @@ fn tell(stream: TcpStream, hub: &Hub, page: PageId, patience: Duration) {
     let Ok(shut) = stream.try_clone() else { return };
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config()));
     let mut seen = Seen::default();
+    let mut ping_at = Instant::now() + patience;
     loop {
-        let message = match hub.next(page, &mut seen, patience) {
+        let quiet = ping_at.saturating_duration_since(Instant::now());
+        // a page that only looks says nothing by itself, but it answers
+        let message = if quiet.is_zero() {
+            ping_at += patience;
+            Next::Send(Message::Ping(Default::default()))
+        } else {
+            hub.next(page, &mut seen, quiet)
+        };
+        let message = match message {
             Next::Send(message) => message,
-            // a page that is there answers, even when nothing happens
-            Next::Nothing => Message::Ping(Default::default()),
+            Next::Nothing => continue,
             Next::Farewell(farewell) => {
                 let _ = socket.close(farewell);
                 let _ = socket.flush();
