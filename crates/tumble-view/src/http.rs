@@ -114,9 +114,9 @@ impl Request {
         };
         let is_ours = |name: &str| {
             let name = name.to_ascii_lowercase();
-            ["127.0.0.1", "localhost", "[::1]"].iter().any(|host| {
-                name == format!("{host}:{port}") || (port == 80 && name == *host)
-            })
+            ["127.0.0.1", "localhost", "[::1]"]
+                .iter()
+                .any(|host| name == format!("{host}:{port}") || (port == 80 && name == *host))
         };
         let origins = self.all("origin");
         let mut hosts = origins.iter().map(|origin| origin.strip_prefix("http://"));
@@ -279,7 +279,8 @@ mod tests {
             ("nonce", "n", 200),
             ("dGhlIHNhbXBsZSBub25jZQ==", "short", 400),
         ] {
-            let answer = request(&good.replacen(from, to, 1)).websocket_key().map_err(|r| r.status).err();
+            let answer =
+                request(&good.replacen(from, to, 1)).websocket_key().map_err(|r| r.status).err();
             assert_eq!(answer.unwrap_or(200), status, "{from}");
         }
     }

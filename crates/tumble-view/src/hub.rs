@@ -163,10 +163,8 @@ impl Hub {
             if let Some(next) = inner.next(page, seen) {
                 return next;
             }
-            let (guard, timeout) = self
-                .changed
-                .wait_timeout(inner, patience)
-                .unwrap_or_else(PoisonError::into_inner);
+            let (guard, timeout) =
+                self.changed.wait_timeout(inner, patience).unwrap_or_else(PoisonError::into_inner);
             inner = guard;
             if timeout.timed_out() {
                 return inner.next(page, seen).unwrap_or(Next::Nothing);

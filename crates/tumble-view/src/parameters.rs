@@ -26,7 +26,12 @@ pub fn parameters(scene: &Scene) -> Vec<Parameter> {
     let mut list = List(Vec::new());
     list.log("dt", scene.dt, "s", (1e-5, 1e-2));
     list.vector("gravity", scene.gravity, "m/s²", 20.0);
-    list.linear("velocity_damping_stiffness", scene.velocity_damping_stiffness, "N·s/m", (0.0, 5.0));
+    list.linear(
+        "velocity_damping_stiffness",
+        scene.velocity_damping_stiffness,
+        "N·s/m",
+        (0.0, 5.0),
+    );
     if let Some(tolerance) = scene.energy_tolerance {
         list.log("energy_tolerance", tolerance, "", (1e-12, 1e-2));
     }

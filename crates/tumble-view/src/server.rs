@@ -82,9 +82,7 @@ impl Server {
         let bind = |port| TcpListener::bind((Ipv4Addr::LOCALHOST, port));
         let Some(port) = port else {
             let mut ports = (PORT..PORT + MORE_PORTS).map(bind);
-            let taken = |result: &io::Result<TcpListener>| {
-                matches!(result, Err(error) if error.kind() == io::ErrorKind::AddrInUse)
-            };
+            let taken = |result: &io::Result<TcpListener>| matches!(result, Err(error) if error.kind() == io::ErrorKind::AddrInUse);
             return ports.find(|result| !taken(result)).unwrap_or_else(|| bind(0));
         };
         bind(port)
@@ -236,7 +234,9 @@ fn route(request: &Request, port: u16, is_live: bool) -> Result<Route<'_>, Refus
     match (request.method.as_str(), request.path.as_str()) {
         ("GET" | "HEAD", "/") => Ok(Route::Page),
         ("GET", "/live") if is_live => Ok(Route::Live(request.websocket_key()?)),
-        ("GET" | "HEAD", _) => Err(Refusal { status: 404, why: "there is nothing here".to_owned() }),
+        ("GET" | "HEAD", _) => {
+            Err(Refusal { status: 404, why: "there is nothing here".to_owned() })
+        }
         _ => Err(Refusal { status: 405, why: "only GET and HEAD are answered".to_owned() }),
     }
 }

@@ -240,7 +240,8 @@ fn commands_are_carried_out() {
     assert!(toml.contains("gravity = [0.0, -1.62, 0.0]"), "{toml}");
     session(&toml);
     page.say("{\"type\":\"reset\"}");
-    let status = page.text_that("status", |status| status["pending"].as_array().unwrap().is_empty());
+    let status =
+        page.text_that("status", |status| status["pending"].as_array().unwrap().is_empty());
     assert_eq!((&status["speed"], &status["error"]), (&1.0.into(), &Value::Null));
     page.say("{\"type\":\"speed\",\"value\":null}");
     page.say("{\"type\":\"play\"}");
@@ -254,7 +255,8 @@ fn commands_are_carried_out() {
 
 #[test]
 fn a_failure_is_told_and_mended() {
-    let scene = SCENE.replace("0.1, 0.0, 0.0]", "0.0, -1e5, 0.0]") + "[[wall]]\nnormal = [0, -1, 0]\noffset = -2\n";
+    let scene = SCENE.replace("0.1, 0.0, 0.0]", "0.0, -1e5, 0.0]")
+        + "[[wall]]\nnormal = [0, -1, 0]\noffset = -2\n";
     let server = serve(&scene);
     let mut page = Page::open(server.port());
     let status = page.text_that("status", |status| !status["error"].is_null());
@@ -281,7 +283,11 @@ fn two_pages_see_the_same_and_both_may_command() {
         page.frame_that(|frame| frame.step == 0.0);
     }
     for step in 1..6 {
-        if step % 2 == 0 { one.say("{\"type\":\"step\"}") } else { two.say("{\"type\":\"step\"}") }
+        if step % 2 == 0 {
+            one.say("{\"type\":\"step\"}")
+        } else {
+            two.say("{\"type\":\"step\"}")
+        }
         let seen = [&mut one, &mut two].map(|page| page.frame_that(|f| f.step == f64::from(step)));
         assert_eq!(seen[0].bytes, seen[1].bytes);
     }
@@ -330,7 +336,8 @@ fn strangers_are_refused() {
     let server = serve(SCENE);
     let port = server.port();
     let wanted = |host: &str, origin: &str, path: &str| {
-        let origin = if origin.is_empty() { String::new() } else { format!("Origin: {origin}\r\n") };
+        let origin =
+            if origin.is_empty() { String::new() } else { format!("Origin: {origin}\r\n") };
         let upgrade = "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n\
                        Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
         let more = if path == "/live" { upgrade } else { "" };
@@ -382,9 +389,11 @@ fn what_is_no_request_is_answered_and_forgotten() {
     assert_eq!(status(&ask(port, "what?\r\n\r\n")), 400);
     assert_eq!(status(&ask(port, "GET / HTTP/1.1\r\n\r\n")), 400);
     assert_eq!(status(&ask(port, "\u{0}\u{1}\u{2}")), 400);
-    let long = format!("GET / HTTP/1.1\r\nHost: localhost:{port}\r\nA: {}\r\n\r\n", "x".repeat(20_000));
+    let long =
+        format!("GET / HTTP/1.1\r\nHost: localhost:{port}\r\nA: {}\r\n\r\n", "x".repeat(20_000));
     assert_eq!(status(&ask(port, &long)), 431);
-    let many = format!("GET / HTTP/1.1\r\nHost: localhost:{port}\r\n{}\r\n", "A: b\r\n".repeat(100));
+    let many =
+        format!("GET / HTTP/1.1\r\nHost: localhost:{port}\r\n{}\r\n", "A: b\r\n".repeat(100));
     assert_eq!(status(&ask(port, &many)), 431);
     // one who never finishes a sentence is not listened to for ever
     let start = Instant::now();
