@@ -117,8 +117,10 @@ fn ctrl_c_leaves_a_complete_folder() {
             desk.files("o"),
             [
                 "checkpoint.tumble",
+                "contacts.csv",
                 "energy.csv",
                 "energy.svg",
+                "motion.html",
                 "motion.png",
                 "scene.toml",
                 "summary.json",

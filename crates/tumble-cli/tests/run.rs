@@ -31,8 +31,10 @@ fn the_folder_holds_what_the_contract_says() {
         desk.files("o"),
         [
             "checkpoint.tumble",
+            "contacts.csv",
             "energy.csv",
             "energy.svg",
+            "motion.html",
             "motion.png",
             "scene.toml",
             "summary.json",

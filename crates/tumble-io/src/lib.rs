@@ -2,6 +2,7 @@
 
 pub mod checkpoint;
 pub mod mesh;
+pub mod page;
 pub mod picture;
 pub mod plot;
 pub mod run;

@@ -16,7 +16,6 @@ pub mod head;
 mod http;
 mod hub;
 mod open;
-mod page;
 mod parameters;
 mod save;
 mod server;

@@ -1,25 +1,13 @@
 //! What a page may change, with its value, unit and a range that makes sense for a slider.
 
-use serde::Serialize;
 use tumble::{DVec3, Damping, MaterialOverride};
+use tumble_io::page::Parameter;
 use tumble_io::scene::{BodyScene, MassScene, Scene};
 
 use crate::setting::applies_at_once;
 
 /// Of more bodies than this only the first are offered for changes.
 const MOST_BODIES: usize = 8;
-
-/// One number of the scene that a page may change.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Parameter {
-    key: String,
-    value: f64,
-    unit: &'static str,
-    applies: &'static str,
-    log: bool,
-    min: f64,
-    max: f64,
-}
 
 /// All that may be changed, in the order in which it is shown.
 pub fn parameters(scene: &Scene) -> Vec<Parameter> {
@@ -75,7 +63,8 @@ impl List {
         (min, max): (f64, f64),
     ) {
         let applies = if applies_at_once(key) { "at once" } else { "at reset" };
-        self.0.push(Parameter { key: key.to_owned(), value, unit, applies, log, min, max });
+        let (key, unit, applies) = (key.to_owned(), unit.to_owned(), applies.to_owned());
+        self.0.push(Parameter { key, value, unit, applies, log, min, max });
     }
 
     /// The three components of a vector, as `key.0`, `key.1`, `key.2`.

@@ -8,10 +8,12 @@ use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
+use tumble_io::page::live_html;
+
 use crate::http::{self, Refusal, Request};
 use crate::hub::Hub;
 use crate::simulation::{Input, MOST_WAITING, simulate};
-use crate::{Session, page, socket};
+use crate::{Session, socket};
 
 /// The port of the viewer, where it is free.
 const PORT: u16 = 8642;
@@ -94,7 +96,7 @@ impl Server {
     /// When the system has no thread to give.
     pub fn start(show: Show, listener: TcpListener, limits: Limits) -> io::Result<Self> {
         let (page, session) = match show {
-            Show::Live(session) => (page::live_html().into_bytes(), Some(session)),
+            Show::Live(session) => (live_html().into_bytes(), Some(session)),
             Show::Page(page) => (page, None),
         };
         let shared = Arc::new(Shared {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use tumble::{Energy, World};
+use tumble::World;
 use tumble_io::scene::{Loaded, Scene};
 
 use crate::command::{Command, Setting};
@@ -30,7 +30,6 @@ pub struct Session {
     speed: Option<f64>,
     /// Simulated time to be made (s).
     owed: f64,
-    /// What the total of the ledger is measured against (J).
     baseline: f64,
     error: Option<String>,
     revision: u64,
@@ -100,10 +99,10 @@ impl Session {
         self.revision
     }
 
-    /// Where the energy is, and how far the total has moved by the integrator's error alone (J).
-    pub fn ledger(&self) -> (Energy, f64) {
-        let energy = self.world.energy();
-        (energy, energy.total() - self.baseline)
+    /// What the total of the ledger is measured against (J): its value at t = 0, and what the person's hand
+    /// has added since.
+    pub fn baseline(&self) -> f64 {
+        self.baseline
     }
 
     /// Carries out a command; the answer, if there is one, is the scene to be saved.

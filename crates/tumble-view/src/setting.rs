@@ -97,7 +97,7 @@ fn visit(value: &mut Value, path: &[&str], change: &mut dyn FnMut(&mut Table, &s
 
 /// Puts the state of `old` into `new`, a world of the same bodies whose model may be another.
 ///
-/// Time is counted in steps: with another dt it moves to the nearest whole number of them. Friction
+/// Time is counted in steps: with another dt it moves on to the next whole number of them. Friction
 /// springs hold to places on walls: when a wall or a coefficient of friction has changed, all let go.
 ///
 /// # Errors
@@ -106,7 +106,8 @@ pub fn transplant(old: &World, new: &mut World) -> Result<(), String> {
     let mut state: State = old.state().clone();
     let (before, after) = (old.model(), new.model());
     if before.dt != after.dt {
-        let steps = (state.time / after.dt).round();
+        let near = (state.time / after.dt).round();
+        let steps = if near * after.dt < state.time { near + 1.0 } else { near };
         if steps > MOST_STEPS {
             return Err(format!("`dt` is too short for t = {} s: reset first", state.time));
         }

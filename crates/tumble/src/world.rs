@@ -3,8 +3,8 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
-    BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError, WorldBuilder,
-    Wrench, step::step,
+    BodyForces, BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError, Wrench,
+    WorldBuilder, step::step,
 };
 
 /// A model and its state, and the means to advance it.
@@ -87,9 +87,10 @@ impl World {
         (0..self.body_count()).map(|index| self.body(index))
     }
 
-    /// The contact force and torque of the latest step on one body, world axes (N, N·m); zero before the first.
+    /// What the walls did to one body in the latest step, by spring, dashpot and friction together.
+    /// Zero before the first step, and for a body that touched nothing.
     pub fn contact_wrench(&self, index: usize) -> Wrench {
-        self.scratch.forces.get(index).map_or_else(Wrench::default, |forces| forces.contact())
+        self.scratch.forces.get(index).map_or_else(Wrench::default, BodyForces::contact)
     }
 
     /// Where the energy is, or went.

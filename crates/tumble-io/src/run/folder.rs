@@ -9,8 +9,17 @@ use tumble::StepError;
 use crate::scene::{HEADER, Scene};
 
 /// The files that a run writes. Nothing else in the folder is ever touched.
-pub(super) const FILES: [&str; 7] =
-    [SCENE, TRAJECTORY, LEDGER, "summary.json", "energy.svg", "motion.png", CHECKPOINT];
+pub(super) const FILES: [&str; 9] = [
+    SCENE,
+    TRAJECTORY,
+    LEDGER,
+    CONTACTS,
+    "summary.json",
+    "energy.svg",
+    "motion.png",
+    "motion.html",
+    CHECKPOINT,
+];
 
 /// The file that shows a folder to be taken.
 pub(super) const SCENE: &str = "scene.toml";
@@ -18,6 +27,8 @@ pub(super) const SCENE: &str = "scene.toml";
 pub(super) const TRAJECTORY: &str = "trajectory.csv";
 /// One row a frame.
 pub(super) const LEDGER: &str = "energy.csv";
+/// One row a frame for each body in contact.
+pub(super) const CONTACTS: &str = "contacts.csv";
 /// What a run goes on from.
 pub const CHECKPOINT: &str = "checkpoint.tumble";
 

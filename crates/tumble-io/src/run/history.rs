@@ -4,13 +4,14 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::PathBuf;
 
-use tumble::{DQuat, DVec3, World};
+use tumble::{DQuat, DVec3, World, Wrench};
 
-use super::folder::{LEDGER, RunFolder, TRAJECTORY};
+use super::folder::{CONTACTS, LEDGER, RunFolder, TRAJECTORY};
 use super::ledger::LEDGER_HEADER;
 use super::recorder::Recorder;
 use super::resume::ResumeError;
-use super::trajectory::TRAJECTORY_HEADER;
+use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
+use crate::page::{BodyFrame, Film};
 use crate::picture::{Frame, Pose};
 use crate::plot::EnergyRow;
 use crate::scene::Scene;
@@ -25,8 +26,12 @@ pub(super) struct History {
     pub trajectory: u64,
     /// Bytes of `energy.csv` up to there.
     pub ledger: u64,
+    /// Bytes of `contacts.csv` up to there.
+    pub contacts: u64,
     /// What the pictures need of it.
     pub recorder: Recorder,
+    /// What the page needs of it.
+    pub film: Film,
 }
 
 impl History {
@@ -43,7 +48,9 @@ impl History {
         }
         let mut trajectory = Rows::open(folder, TRAJECTORY, TRAJECTORY_HEADER)?;
         let mut ledger = Rows::open(folder, LEDGER, LEDGER_HEADER)?;
+        let mut contacts = Contacts::open(folder)?;
         let mut recorder = Recorder::new(world.body_count());
+        let mut film = Film::new(world.body_count());
         let last = world.state().step;
         let mut row = ledger.next()?.map(|row| ledger_row(&row)).transpose();
         // a run that lost its first rows begins with a later frame
@@ -66,8 +73,11 @@ impl History {
                     return Err(ledger.wrong(&format!("has another row than that of t = {time} s")));
                 }
             };
-            let poses = poses(&mut trajectory, world, time)?;
+            let bodies = bodies((&mut trajectory, &mut contacts), world, time)?;
+            let pose = |b: &BodyFrame| Pose { position: b.position, orientation: b.orientation };
+            let poses = bodies.iter().map(pose).collect();
             recorder.record_frame(Frame { time, poses }, next);
+            film.record(step, &next, bodies.into_iter());
             step = scene.next_frame(step);
             if step <= last {
                 row = ledger.next()?.map(|row| ledger_row(&row)).transpose();
@@ -75,33 +85,94 @@ impl History {
         }
         // of a first frame that is still to come, the row was read but is not kept
         let ledger = if first > last { ledger.header } else { ledger.at };
-        Ok(Some(Self { trajectory: trajectory.at, ledger, recorder }))
+        let (trajectory, contacts) = (trajectory.at, contacts.kept);
+        Ok(Some(Self { trajectory, ledger, contacts, recorder, film }))
     }
 }
 
-/// The rows of one frame of `trajectory.csv`, one a body.
-fn poses(rows: &mut Rows, world: &World, time: f64) -> Result<Vec<Pose>, ResumeError> {
-    let mut poses = Vec::with_capacity(world.body_count());
+/// The rows of one frame of `trajectory.csv`, one a body, and what `contacts.csv` says to them.
+fn bodies(
+    (rows, contacts): (&mut Rows, &mut Contacts),
+    world: &World,
+    time: f64,
+) -> Result<Vec<BodyFrame>, ResumeError> {
+    let mut bodies = Vec::with_capacity(world.body_count());
     for body in world.bodies() {
         let name = body.name();
         let missing = format!("has no row of \"{name}\" at t = {time} s");
         let row = rows.next()?.ok_or_else(|| rows.wrong(&missing))?;
-        let pose = pose(&row, time, name);
-        poses.push(pose.ok_or_else(|| {
+        let frame = body_frame(&row, time, name).ok_or_else(|| {
             rows.wrong(&format!("has another row than that of \"{name}\" at t = {time} s"))
-        })?);
+        })?;
+        bodies.push(BodyFrame { contact: contacts.of(time, name)?, ..frame });
     }
-    Ok(poses)
+    Ok(bodies)
 }
 
-fn pose(row: &str, time: f64, name: &str) -> Option<Pose> {
+fn body_frame(row: &str, time: f64, name: &str) -> Option<BodyFrame> {
     let (of, rest) = row.split_once(',')?;
     let (body, rest) = rest.split_once(',')?;
     if of.parse::<f64>().ok()? != time || body != name {
         return None;
     }
-    let [px, py, pz, w, x, y, z, ..] = numbers::<16>(rest)?;
-    Some(Pose { position: DVec3::new(px, py, pz), orientation: DQuat::from_xyzw(x, y, z, w) })
+    let [px, py, pz, w, x, y, z, vx, vy, vz, wx, wy, wz, lx, ly, lz] = numbers::<16>(rest)?;
+    Some(BodyFrame {
+        position: DVec3::new(px, py, pz),
+        orientation: DQuat::from_xyzw(x, y, z, w),
+        velocity: DVec3::new(vx, vy, vz),
+        angular_velocity: DVec3::new(wx, wy, wz),
+        angular_momentum: DVec3::new(lx, ly, lz),
+        contact: Wrench::default(),
+    })
+}
+
+/// The rows of `contacts.csv`, of which there are only some.
+struct Contacts {
+    rows: Rows,
+    next: Option<(f64, String, Wrench)>,
+    /// Bytes of the header and the rows that were asked for.
+    kept: u64,
+}
+
+impl Contacts {
+    fn open(folder: &RunFolder) -> Result<Self, ResumeError> {
+        let rows = Rows::open(folder, CONTACTS, CONTACTS_HEADER)?;
+        let kept = rows.header;
+        let mut contacts = Self { rows, next: None, kept };
+        contacts.advance();
+        Ok(contacts)
+    }
+
+    /// Contact of one body in one frame; to be asked in the order of `trajectory.csv`.
+    fn of(&mut self, time: f64, name: &str) -> Result<Wrench, ResumeError> {
+        match &self.next {
+            Some((of, body, wrench)) if *of == time && body == name => {
+                let wrench = *wrench;
+                self.kept = self.rows.at;
+                self.advance();
+                Ok(wrench)
+            }
+            Some((of, body, _)) if *of < time => {
+                let what = format!("has a row of \"{body}\" at t = {of} s out of its order");
+                Err(self.rows.wrong(&what))
+            }
+            _ => Ok(Wrench::default()),
+        }
+    }
+
+    /// Looks one row ahead, perhaps behind the checkpoint, where a power cut may have left anything:
+    /// what is no row ends them.
+    fn advance(&mut self) {
+        self.next = self.rows.next().ok().flatten().and_then(|row| contact(&row));
+    }
+}
+
+fn contact(row: &str) -> Option<(f64, String, Wrench)> {
+    let (time, rest) = row.split_once(',')?;
+    let (body, rest) = rest.split_once(',')?;
+    let [fx, fy, fz, tx, ty, tz] = numbers::<6>(rest)?;
+    let (force, torque) = (DVec3::new(fx, fy, fz), DVec3::new(tx, ty, tz));
+    Some((time.parse().ok()?, body.to_owned(), Wrench { force, torque }))
 }
 
 fn ledger_row(row: &str) -> Result<EnergyRow, ()> {

@@ -17,4 +17,4 @@ pub use recorder::Recorder;
 pub use resume::{ResumeError, Resumption};
 pub use runner::{Finished, Progress, run};
 pub use summary::Summary;
-pub use trajectory::{TRAJECTORY_HEADER, write_frame};
+pub use trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER, write_contacts, write_frame};

@@ -7,24 +7,32 @@ use std::time::{Duration, Instant};
 use tumble::{State, World};
 
 use super::drawing::motion_picture;
-use super::folder::{CHECKPOINT, LEDGER, RunError, RunFolder, TRAJECTORY};
+use super::folder::{CHECKPOINT, CONTACTS, LEDGER, RunError, RunFolder, TRAJECTORY};
 use super::history::History;
 use super::ledger::{LEDGER_HEADER, ledger_row, line};
 use super::recorder::Recorder;
-use super::trajectory::{TRAJECTORY_HEADER, write_frame};
+use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER, write_contacts, write_frame};
 use crate::checkpoint;
+use crate::page::{self, BodyFrame, Film};
 use crate::plot::{EnergyRow, energy_svg};
 use crate::scene::Scene;
 
 /// A checkpoint comes about every ten seconds, but takes no more than a tenth of all time.
 const LEAST_WAIT: Duration = Duration::from_secs(10);
 
+/// The files that grow.
+struct Files {
+    trajectory: BufWriter<File>,
+    ledger: BufWriter<File>,
+    contacts: BufWriter<File>,
+}
+
 /// The files that grow while a run goes on, and its checkpoints.
 pub(super) struct Recording<'a> {
     folder: &'a RunFolder,
-    trajectory: BufWriter<File>,
-    ledger: BufWriter<File>,
+    files: Files,
     recorder: Recorder,
+    film: Film,
     start: f64,
     toml: String,
     /// When the next checkpoint is due by the clock.
@@ -39,12 +47,18 @@ impl<'a> Recording<'a> {
         world: &World,
         start: f64,
     ) -> Result<Self, RunError> {
-        let mut trajectory = folder.open(TRAJECTORY)?;
-        let mut ledger = folder.open(LEDGER)?;
-        writeln!(trajectory, "{TRAJECTORY_HEADER}").map_err(|e| failed(folder, TRAJECTORY, e))?;
-        writeln!(ledger, "{LEDGER_HEADER}").map_err(|e| failed(folder, LEDGER, e))?;
-        let recorder = Recorder::new(world.body_count());
-        Ok(Self::of(folder, (trajectory, ledger), recorder, scene, start))
+        let begin = |name, header| {
+            let mut file = folder.open(name)?;
+            writeln!(file, "{header}").map_err(|e| failed(folder, name, e))?;
+            Ok(file)
+        };
+        let files = Files {
+            trajectory: begin(TRAJECTORY, TRAJECTORY_HEADER)?,
+            ledger: begin(LEDGER, LEDGER_HEADER)?,
+            contacts: begin(CONTACTS, CONTACTS_HEADER)?,
+        };
+        let memory = (Recorder::new(world.body_count()), Film::new(world.body_count()));
+        Ok(Self::of(folder, files, memory, scene, start))
     }
 
     /// Goes on after the rows of `history`, in its own folder or in another one.
@@ -55,7 +69,7 @@ impl<'a> Recording<'a> {
         scene: &Scene,
         start: f64,
     ) -> Result<Self, RunError> {
-        let History { trajectory, ledger, recorder } = history;
+        let History { trajectory, ledger, contacts, recorder, film } = history;
         let open = |name, length| {
             if source.is(folder.path()) {
                 return folder.reopen(name, length);
@@ -66,27 +80,34 @@ impl<'a> Recording<'a> {
                 .map_err(|e| failed(folder, name, e))?;
             Ok(copy)
         };
-        let files = (open(TRAJECTORY, trajectory)?, open(LEDGER, ledger)?);
-        Ok(Self::of(folder, files, recorder, scene, start))
+        let files = Files {
+            trajectory: open(TRAJECTORY, trajectory)?,
+            ledger: open(LEDGER, ledger)?,
+            contacts: open(CONTACTS, contacts)?,
+        };
+        Ok(Self::of(folder, files, (recorder, film), scene, start))
     }
 
     fn of(
         folder: &'a RunFolder,
-        (trajectory, ledger): (BufWriter<File>, BufWriter<File>),
-        recorder: Recorder,
+        files: Files,
+        (recorder, film): (Recorder, Film),
         scene: &Scene,
         start: f64,
     ) -> Self {
         let (toml, due) = (scene.to_toml(), Instant::now() + LEAST_WAIT);
-        Self { folder, trajectory, ledger, recorder, start, toml, due }
+        Self { folder, files, recorder, film, start, toml, due }
     }
 
     /// One more frame.
     pub fn frame(&mut self, world: &World) -> Result<(), RunError> {
         let row = self.row(world)?;
-        write_frame(&mut self.trajectory, world).map_err(|e| failed(self.folder, TRAJECTORY, e))?;
-        writeln!(self.ledger, "{}", line(&row)).map_err(|e| failed(self.folder, LEDGER, e))?;
+        let Files { trajectory, ledger, contacts } = &mut self.files;
+        write_frame(trajectory, world).map_err(|e| failed(self.folder, TRAJECTORY, e))?;
+        writeln!(ledger, "{}", line(&row)).map_err(|e| failed(self.folder, LEDGER, e))?;
+        write_contacts(contacts, world).map_err(|e| failed(self.folder, CONTACTS, e))?;
         self.recorder.record(world, row);
+        self.film.record(world.state().step, &row, BodyFrame::all(world));
         Ok(())
     }
 
@@ -112,7 +133,8 @@ impl<'a> Recording<'a> {
     /// Writes a checkpoint; the rows of all frames until now reach the disk before it.
     pub fn checkpoint(&mut self, scene: &Scene, state: &State) -> Result<(), RunError> {
         let begin = Instant::now();
-        for (name, file) in [(TRAJECTORY, &mut self.trajectory), (LEDGER, &mut self.ledger)] {
+        let Files { trajectory, ledger, contacts } = &mut self.files;
+        for (name, file) in [(TRAJECTORY, trajectory), (LEDGER, ledger), (CONTACTS, contacts)] {
             file.flush()
                 .and_then(|()| file.get_ref().sync_data())
                 .map_err(|e| failed(self.folder, name, e))?;
@@ -134,6 +156,12 @@ impl<'a> Recording<'a> {
         let png = motion_picture(scene, world, &frames)
             .map_err(|e| RunError::Draw(self.folder.file("motion.png"), e.to_string()))?;
         self.folder.write("motion.png", &png)?;
+        // of a run that went on without its first rows there may be no frame yet
+        if self.film.is_empty() {
+            self.film.record(world.state().step, &row, BodyFrame::all(world));
+        }
+        let html = page::motion_html(&page::Head::of(scene, world), &self.film);
+        self.folder.write("motion.html", html.as_bytes())?;
         Ok(row)
     }
 }

@@ -1,8 +1,8 @@
-//! `trajectory.csv`: one row a body a frame.
+//! `trajectory.csv`: one row a body a frame; `contacts.csv`: one for each body in contact.
 
 use std::io::{self, Write};
 
-use tumble::World;
+use tumble::{World, Wrench};
 
 /// The columns.
 pub const TRAJECTORY_HEADER: &str = "time,body,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,lx,ly,lz";
@@ -19,6 +19,30 @@ pub fn write_frame(out: &mut impl Write, world: &World) -> io::Result<()> {
         let numbers =
             [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z, l.x, l.y, l.z];
         for number in numbers {
+            write!(out, ",{number:?}")?;
+        }
+        writeln!(out)?;
+    }
+    Ok(())
+}
+
+/// The columns of `contacts.csv`.
+pub const CONTACTS_HEADER: &str = "time,body,fx,fy,fz,tx,ty,tz";
+
+/// Writes one row for each body that touches a wall: the force of all its contacts (N) and their
+/// torque about its centre of mass (N·m), world axes, as they acted in the latest step.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_contacts(out: &mut impl Write, world: &World) -> io::Result<()> {
+    for (index, body) in world.bodies().enumerate() {
+        let wrench = world.contact_wrench(index);
+        if wrench == Wrench::default() {
+            continue;
+        }
+        let (f, t) = (wrench.force, wrench.torque);
+        write!(out, "{:?},{}", world.time(), body.name())?;
+        for number in [f.x, f.y, f.z, t.x, t.y, t.z] {
             write!(out, ",{number:?}")?;
         }
         writeln!(out)?;

@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Opens the viewer's page in a browser and checks what people would see and do.
+# Needs node, npm and cargo; installs chromium by apt where there is none.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+if ! command -v chromium >/dev/null; then
+    apt-get update -q && apt-get install -y -q --no-install-recommends chromium
+fi
+if ! [ -d e2e/.tools/node_modules/playwright-core ]; then
+    PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm install --silent --no-audit --no-fund --prefix e2e/.tools playwright-core@1 ws@8
+fi
+
+cargo build -p tumble-cli --locked
+tumble=${CARGO_TARGET_DIR:-target}/debug/tumble
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+for scene in task2 task2-cat racket many slope; do
+    "$tumble" run "$scene" --out "$out/$scene" >/dev/null
+done
+"$tumble" run many --out "$out/crowd" --duration 0.5 --set body.0.copies.count="[10,5,10]" \
+    --set body.1.copies.count="[10,5,10]" --set body.0.copies.spacing="[0.18,0.2,0.18]" \
+    --set body.1.copies.spacing="[0.18,0.2,0.18]" --set body.1.position="[0.0,2.5,0.0]" >/dev/null || true
+
+export NODE_PATH=$PWD/e2e/.tools/node_modules
+node e2e/page.mjs "$out" "${1:-}"

@@ -1,0 +1,73 @@
+// Arrows and inertia ellipsoids on the graphics card.
+
+import { attribute, buffer, program, setView } from './gl.js';
+import { arrow, ball } from './geometry.js';
+import { ARROW_FRAGMENT, ARROW_VERTEX, ELLIPSOID_FRAGMENT, ELLIPSOID_VERTEX } from './shaders.js';
+
+const FLOATS = 12; // origin, length; direction, radius; colour, opacity
+
+export class Arrows {
+  constructor(gl) {
+    this.gl = gl;
+    this.arrow = program(gl, ARROW_VERTEX, ARROW_FRAGMENT);
+    this.ellipsoid = program(gl, ELLIPSOID_VERTEX, ELLIPSOID_FRAGMENT);
+    const shape = arrow();
+    this.cornerCount = shape.length / 7;
+    this.instances = gl.createBuffer();
+    this.array = gl.createVertexArray();
+    gl.bindVertexArray(this.array);
+    buffer(gl, shape);
+    attribute(gl, 0, 4, 28, 0);
+    attribute(gl, 1, 3, 28, 16);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.instances);
+    [4, 5, 6].forEach((index, k) => attribute(gl, index, 4, 4 * FLOATS, 16 * k, true));
+    const round = ball();
+    this.ballCount = round.length / 6;
+    this.ballArray = gl.createVertexArray();
+    gl.bindVertexArray(this.ballArray);
+    buffer(gl, round);
+    attribute(gl, 0, 3, 24, 0);
+    gl.bindVertexArray(null);
+  }
+
+  // `list`: { origin, direction, length, colour }; thickness in metres
+  draw(view, list, thickness) {
+    if (!list.length) return;
+    const { gl } = this;
+    const data = new Float32Array(FLOATS * list.length);
+    list.forEach(({ origin, direction, length, colour }, i) => {
+      data.set([...origin, length, ...direction, thickness, ...colour, 1], FLOATS * i);
+    });
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.instances);
+    gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+    setView(gl, this.arrow, view);
+    gl.bindVertexArray(this.array);
+    // what a body hides is seen through it, faintly
+    gl.depthMask(false);
+    gl.depthFunc(gl.GREATER);
+    gl.uniform1f(this.arrow.at.strength, 0.3);
+    gl.drawArraysInstanced(gl.TRIANGLES, 0, this.cornerCount, list.length);
+    gl.depthMask(true);
+    gl.depthFunc(gl.LEQUAL);
+    gl.uniform1f(this.arrow.at.strength, 1);
+    gl.drawArraysInstanced(gl.TRIANGLES, 0, this.cornerCount, list.length);
+  }
+
+  // `list`: { centre, turn, axes }
+  drawEllipsoids(view, list, tint) {
+    if (!list.length) return;
+    const { gl } = this;
+    const { at } = this.ellipsoid;
+    setView(gl, this.ellipsoid, view);
+    gl.uniform3fv(at.tint, tint);
+    gl.bindVertexArray(this.ballArray);
+    gl.depthMask(false);
+    for (const { centre, turn, axes } of list) {
+      gl.uniform3fv(at.centre, centre);
+      gl.uniform4fv(at.turn, turn);
+      gl.uniform3fv(at.axes, axes);
+      gl.drawArrays(gl.TRIANGLES, 0, this.ballCount);
+    }
+    gl.depthMask(true);
+  }
+}

@@ -1,0 +1,41 @@
+// Numbers and their units as people read them.
+
+// about `digits` digits, without exponents where a plain number is as short
+export function number(x, digits = 3) {
+  if (x === null || x === undefined || Number.isNaN(x)) return '–';
+  if (!Number.isFinite(x)) return x > 0 ? '∞' : '−∞';
+  const size = Math.abs(x);
+  let text;
+  if (size === 0) text = '0';
+  else if (size >= 1e6 || size < 1e-4) {
+    const [mantissa, exponent] = x.toExponential(Math.max(digits - 1, 0)).split('e');
+    text = `${mantissa}·10${superscript(Number(exponent))}`;
+  } else {
+    const places = clampPlaces(digits - 1 - Math.floor(Math.log10(size)));
+    text = x.toFixed(places);
+    if (size >= 10000) text = text.replace(/\B(?=(\d{3})+(?!\d))/g, '\u2009');
+  }
+  return text.replace('-', '−');
+}
+
+const clampPlaces = (n) => Math.min(Math.max(n, 0), 8);
+
+function superscript(n) {
+  const digits = '⁰¹²³⁴⁵⁶⁷⁸⁹';
+  return (n < 0 ? '⁻' : '') + [...String(Math.abs(n))].map((d) => digits[Number(d)]).join('');
+}
+
+export const quantity = (x, unit, digits = 3) => `${number(x, digits)}\u202f${unit}`;
+
+// as many places as make neighbouring frames differ
+export function time(t, interval) {
+  const places = Math.min(Math.max(Math.ceil(-Math.log10(Math.max(interval, 1e-9))), 1), 6);
+  return t.toFixed(places).replace('-', '−');
+}
+
+// a round number near x: 1, 2 or 5 times a power of ten
+export function round125(x) {
+  const power = 10 ** Math.floor(Math.log10(x));
+  const rest = x / power;
+  return (rest < 1.5 ? 1 : rest < 3.5 ? 2 : rest < 7.5 ? 5 : 10) * power;
+}

@@ -1,0 +1,148 @@
+// From triangles to what a graphics card draws: corners with normals, edges, arrows, balls.
+
+const CREASE = Math.cos((38 * Math.PI) / 180);
+// a body of so few triangles is shown as what it is: flat faces
+const FLAT = 200;
+
+// position and normal of every corner, six floats each
+export function corners(vertices, triangles) {
+  const count = triangles.length / 3;
+  const out = new Float32Array(count * 18);
+  const faces = faceNormals(vertices, triangles);
+  const around = count > FLAT ? facesAround(vertices, triangles) : null;
+  for (let t = 0; t < count; t++) {
+    for (let c = 0; c < 3; c++) {
+      const at = 6 * (3 * t + c);
+      const vertex = triangles[3 * t + c];
+      for (let k = 0; k < 3; k++) out[at + k] = vertices[3 * vertex + k];
+      const n = around ? smooth(faces, around, t, vertex) : faces.unit.subarray(3 * t, 3 * t + 3);
+      out.set(n, at + 3);
+    }
+  }
+  return out;
+}
+
+// unit normals, and areas to weigh them by
+function faceNormals(vertices, triangles) {
+  const count = triangles.length / 3;
+  const unit = new Float32Array(3 * count);
+  const area = new Float32Array(count);
+  for (let t = 0; t < count; t++) {
+    const [a, b, c] = [0, 1, 2].map((k) => 3 * triangles[3 * t + k]);
+    const ux = vertices[b] - vertices[a];
+    const uy = vertices[b + 1] - vertices[a + 1];
+    const uz = vertices[b + 2] - vertices[a + 2];
+    const vx = vertices[c] - vertices[a];
+    const vy = vertices[c + 1] - vertices[a + 1];
+    const vz = vertices[c + 2] - vertices[a + 2];
+    const n = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    const l = Math.hypot(n[0], n[1], n[2]);
+    area[t] = l;
+    if (l > 0) unit.set([n[0] / l, n[1] / l, n[2] / l], 3 * t);
+  }
+  return { unit, area };
+}
+
+// for each vertex the triangles at it: starts into one list
+function facesAround(vertices, triangles) {
+  const group = weld(vertices);
+  const starts = new Uint32Array(vertices.length / 3 + 1);
+  for (const vertex of triangles) starts[group[vertex] + 1]++;
+  for (let i = 1; i < starts.length; i++) starts[i] += starts[i - 1];
+  const list = new Uint32Array(triangles.length);
+  const next = starts.slice();
+  triangles.forEach((vertex, i) => {
+    list[next[group[vertex]]++] = Math.floor(i / 3);
+  });
+  return { group, starts, list };
+}
+
+// vertices at the very same place count as one
+function weld(vertices) {
+  const bits = new Uint32Array(vertices.buffer, vertices.byteOffset, vertices.length);
+  const seen = new Map();
+  const group = new Uint32Array(vertices.length / 3);
+  for (let v = 0; v < group.length; v++) {
+    const key = `${bits[3 * v]},${bits[3 * v + 1]},${bits[3 * v + 2]}`;
+    const first = seen.get(key);
+    if (first === undefined) seen.set(key, v);
+    group[v] = first ?? v;
+  }
+  return group;
+}
+
+function smooth({ unit, area }, { group, starts, list }, t, vertex) {
+  let x = 0;
+  let y = 0;
+  let z = 0;
+  const g = group[vertex];
+  const [nx, ny, nz] = unit.subarray(3 * t, 3 * t + 3);
+  for (let i = starts[g]; i < starts[g + 1]; i++) {
+    const f = list[i];
+    const cosine = unit[3 * f] * nx + unit[3 * f + 1] * ny + unit[3 * f + 2] * nz;
+    if (cosine < CREASE) continue;
+    x += area[f] * unit[3 * f];
+    y += area[f] * unit[3 * f + 1];
+    z += area[f] * unit[3 * f + 2];
+  }
+  const l = Math.hypot(x, y, z);
+  return l > 0 ? [x / l, y / l, z / l] : [nx, ny, nz];
+}
+
+// both ends of every edge, once, as indices
+export function edges(triangles) {
+  const seen = new Set();
+  const list = [];
+  for (let i = 0; i < triangles.length; i += 3) {
+    for (let k = 0; k < 3; k++) {
+      const a = triangles[i + k];
+      const b = triangles[i + ((k + 1) % 3)];
+      const key = Math.min(a, b) * 4294967296 + Math.max(a, b);
+      if (!seen.has(key)) {
+        seen.add(key);
+        list.push(a, b);
+      }
+    }
+  }
+  return new Uint32Array(list);
+}
+
+// a ball of radius one, as corners
+export function ball(rings = 20, segments = 36) {
+  const at = (i, j) => {
+    const a = (Math.PI * i) / rings;
+    const b = (2 * Math.PI * j) / segments;
+    return [Math.sin(a) * Math.cos(b), Math.cos(a), Math.sin(a) * Math.sin(b)];
+  };
+  const out = [];
+  for (let i = 0; i < rings; i++) {
+    for (let j = 0; j < segments; j++) {
+      const [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+      for (const p of [a, b, c, a, c, d]) out.push(...p, ...p);
+    }
+  }
+  return new Float32Array(out);
+}
+
+// An arrow along +y as (radius, along, is head, angle): the shader stretches shaft and head apart.
+export function arrow(segments = 20) {
+  const out = [];
+  const ring = (profile) => {
+    for (let s = 0; s < profile.length - 1; s++) {
+      const [p, q] = [profile[s], profile[s + 1]];
+      const slope = Math.atan2(p.r - q.r, q.y - p.y + (q.head - p.head));
+      for (let j = 0; j < segments; j++) {
+        const corner = (end, k) => {
+          const b = (2 * Math.PI * (j + k)) / segments;
+          out.push(end.r * Math.cos(b), end.y, end.r * Math.sin(b), end.head);
+          out.push(Math.cos(b) * Math.cos(slope), Math.sin(slope), Math.sin(b) * Math.cos(slope));
+        };
+        [[p, 0], [q, 0], [q, 1], [p, 0], [q, 1], [p, 1]].forEach(([end, k]) => corner(end, k));
+      }
+    }
+  };
+  // `y` runs from 0 to 1 along the shaft, `head` from 0 to 1 along the head
+  ring([{ r: 0, y: 0, head: 0 }, { r: 1, y: 0, head: 0 }, { r: 1, y: 1, head: 0 }]);
+  ring([{ r: 1, y: 1, head: 0 }, { r: 2.6, y: 1, head: 0 }, { r: 0, y: 1, head: 1 }]);
+  return new Float32Array(out);
+}

@@ -1,0 +1,228 @@
+// The ledger over time: where the energy is and where it went, one band on top of the other.
+
+import { element } from './dom.js';
+import { quantity, round125 } from './format.js';
+import { LEDGER } from './palette.js';
+
+const GRAVITATIONAL = 1;
+const TOTAL = 6;
+const RESIDUAL = 7;
+const LEFT = 58;
+const RIGHT = 10;
+const TOP = 8;
+const BOTTOM = 18;
+
+export class Plot {
+  constructor(parent, player) {
+    this.player = player;
+    this.canvas = element('canvas', { role: 'img' });
+    this.cursor = element('div', { className: 'cursor' });
+    this.hover = element('div', { className: 'cursor hover', hidden: true });
+    this.tip = element('div', { className: 'tip', hidden: true });
+    this.legend = element('div', { className: 'legend' });
+    this.area = element('div', { className: 'area' }, this.canvas, this.cursor, this.hover, this.tip);
+    parent.replaceChildren(this.legend, this.area);
+    this.key = '';
+    this.listen();
+  }
+
+  listen() {
+    const { area } = this;
+    let held = false;
+    const seek = (event) => {
+      this.player.playing = false;
+      const t = this.timeAt(event.offsetX ?? 0);
+      const { film } = this.player;
+      const i = film.indexAt(t);
+      const next = film.frames[Math.min(i + 1, film.length - 1)];
+      if (film.length) this.player.seek(next.time - t < t - film.frames[i].time ? next.time : film.frames[i].time);
+    };
+    area.addEventListener('pointerdown', (event) => {
+      held = true;
+      area.setPointerCapture(event.pointerId);
+      seek(event);
+    });
+    area.addEventListener('pointermove', (event) => {
+      if (held) seek(event);
+      this.point(event.offsetX);
+    });
+    area.addEventListener('pointerup', () => (held = false));
+    area.addEventListener('pointercancel', () => (held = false));
+    area.addEventListener('pointerleave', () => this.point(null));
+  }
+
+  span() {
+    const { film } = this.player;
+    return [film.start, Math.max(film.end, film.start + 1e-9)];
+  }
+
+  timeAt(x) {
+    const [start, end] = this.span();
+    const part = (x - LEFT) / Math.max(this.width - LEFT - RIGHT, 1);
+    return start + Math.min(Math.max(part, 0), 1) * (end - start);
+  }
+
+  xOf(t) {
+    const [start, end] = this.span();
+    return LEFT + ((t - start) / (end - start)) * (this.width - LEFT - RIGHT);
+  }
+
+  // draws anew if size, theme or film are others than last time; then the cursor
+  update(themeName) {
+    const { film } = this.player;
+    const box = this.area.getBoundingClientRect();
+    if (box.width < 40 || !film.length) return;
+    this.width = box.width;
+    this.height = box.height;
+    const key = `${box.width} ${box.height} ${themeName} ${film.length} ${film.end} ${film.dropped}`;
+    const now = performance.now();
+    // a live film grows with every frame: a few drawings a second will do
+    if (key !== this.key && (!this.player.live || now - (this.drawn ?? 0) > 150)) {
+      this.key = key;
+      this.drawn = now;
+      this.paint();
+    }
+    this.cursor.style.transform = `translateX(${this.xOf(this.player.time)}px)`;
+  }
+
+  // the heights of all bands of one frame, from below
+  bands(frame) {
+    return LEDGER.map((_, k) => frame.ledger[k] - (k === GRAVITATIONAL ? this.lowest : 0));
+  }
+
+  paint() {
+    const { film } = this.player;
+    const ratio = window.devicePixelRatio || 1;
+    this.canvas.width = Math.round(this.width * ratio);
+    this.canvas.height = Math.round(this.height * ratio);
+    const pen = this.canvas.getContext('2d');
+    pen.scale(ratio, ratio);
+    this.lowest = film.frames.reduce((low, f) => Math.min(low, f.ledger[GRAVITATIONAL]), Infinity);
+    // as many frames as there are half pixels
+    const step = Math.max(1, Math.floor(film.length / (2 * this.width)));
+    const frames = film.frames.filter((_, i) => i % step === 0 || i === film.length - 1);
+    const rows = frames.map((frame) => this.bands(frame));
+    const totals = frames.map((frame) => frame.ledger[TOTAL] - this.lowest);
+    const used = LEDGER.map((_, k) => rows.some((row) => Math.abs(row[k]) > 0));
+    const top = Math.max(...rows.map((row) => row.reduce((sum, x) => sum + Math.max(x, 0), 0)), ...totals, 1e-300);
+    this.scaleY = (this.height - TOP - BOTTOM) / (1.06 * top);
+    const y = (value) => this.height - BOTTOM - value * this.scaleY;
+    const style = getComputedStyle(this.area);
+    this.axes(pen, 1.06 * top, y, style);
+    this.fill(pen, frames, rows, used, y);
+    this.line(pen, frames, totals, y, style.getPropertyValue('--ink'));
+    this.writeLegend(used);
+  }
+
+  fill(pen, frames, rows, used, y) {
+    const base = new Float64Array(frames.length);
+    LEDGER.forEach(({ colour }, k) => {
+      if (!used[k]) return;
+      pen.beginPath();
+      frames.forEach((frame, i) => pen.lineTo(this.xOf(frame.time), y(base[i])));
+      for (let i = frames.length - 1; i >= 0; i--) {
+        pen.lineTo(this.xOf(frames[i].time), y(base[i] + Math.max(rows[i][k], 0)));
+      }
+      frames.forEach((_, i) => (base[i] += Math.max(rows[i][k], 0)));
+      pen.fillStyle = colour;
+      pen.globalAlpha = 0.82;
+      pen.fill();
+      pen.globalAlpha = 1;
+    });
+  }
+
+  // the sum, and dashed where it began
+  line(pen, frames, totals, y, ink) {
+    pen.strokeStyle = ink;
+    pen.lineWidth = 1.6;
+    pen.lineJoin = 'round';
+    pen.beginPath();
+    frames.forEach((frame, i) => pen.lineTo(this.xOf(frame.time), y(totals[i])));
+    pen.stroke();
+    pen.setLineDash([2, 4]);
+    pen.lineWidth = 1;
+    pen.beginPath();
+    pen.moveTo(LEFT, y(totals[0]));
+    pen.lineTo(this.width - RIGHT, y(totals[0]));
+    pen.stroke();
+    pen.setLineDash([]);
+  }
+
+  axes(pen, top, y, style) {
+    const muted = style.getPropertyValue('--muted');
+    const hair = style.getPropertyValue('--hair');
+    pen.font = `11px ${style.fontFamily}`;
+    pen.fillStyle = muted;
+    pen.strokeStyle = hair;
+    pen.lineWidth = 1;
+    pen.textAlign = 'right';
+    pen.textBaseline = 'middle';
+    const count = Math.max(Math.min(Math.floor(this.height / 34), 5), 2);
+    const step = round125(top / count);
+    for (let value = 0; value <= top; value += step) {
+      pen.beginPath();
+      pen.moveTo(LEFT, Math.round(y(value)) + 0.5);
+      pen.lineTo(this.width - RIGHT, Math.round(y(value)) + 0.5);
+      pen.stroke();
+      pen.fillText(quantity(value, 'J', 2), LEFT - 6, y(value));
+    }
+    pen.textBaseline = 'top';
+    pen.textAlign = 'center';
+    const [start, end] = this.span();
+    const every = round125((end - start) / Math.max(this.width / 90, 2));
+    for (let t = Math.ceil(start / every) * every; t <= end + 1e-9 * every; t += every) {
+      const x = Math.min(Math.max(this.xOf(t), LEFT + 8), this.width - RIGHT - 12);
+      pen.fillText(`${Number(t.toPrecision(6))} s`, x, this.height - BOTTOM + 4);
+    }
+  }
+
+  writeLegend(used) {
+    const shown = used.map(Number).join('');
+    if (shown === this.legendKey) return;
+    this.legendKey = shown;
+    this.values = new Map();
+    const item = (key, label, css) => {
+      const value = element('span', { className: 'value' });
+      this.values.set(key, value);
+      return element('div', { className: 'item' }, element('i', { className: key === TOTAL ? 'swatch line' : 'swatch', css: { '--c': css } }), element('span', {}, label), value);
+    };
+    const parts = LEDGER.map((part, k) => (used[k] ? item(k, part.label, part.colour) : null)).filter(Boolean);
+    this.legend.replaceChildren(element('h2', {}, 'Energy'), item(TOTAL, 'Total', 'var(--ink)'), ...parts.reverse());
+    const last = this.player.film.frames.at(-1);
+    const drift = quantity(last.ledger[RESIDUAL], 'J', 2);
+    this.canvas.setAttribute('aria-label', `Energy over time, from ${this.player.film.start} to ${last.time} seconds. The total has moved by ${drift} since the start.`);
+  }
+
+  // the values at the moment that is shown
+  tick(frame) {
+    if (!this.values || !frame) return;
+    const bands = this.bands(frame);
+    for (const [key, node] of this.values) {
+      const value = key === TOTAL ? frame.ledger[TOTAL] - this.lowest : bands[key];
+      node.textContent = quantity(value, 'J', 4);
+    }
+  }
+
+  // the values under the pointer
+  point(x) {
+    const { film } = this.player;
+    const off = x === null || !film.length || !this.width;
+    this.hover.hidden = off;
+    this.tip.hidden = off;
+    if (off) return;
+    const frame = film.frames[film.indexAt(this.timeAt(x))];
+    const at = this.xOf(frame.time);
+    this.hover.style.transform = `translateX(${at}px)`;
+    const bands = this.bands(frame);
+    const rows = LEDGER.map((part, k) => [part, bands[k]]).filter((_, k) => this.values?.has(k));
+    this.tip.replaceChildren(
+      element('b', {}, `${Number(frame.time.toPrecision(6))} s`),
+      ...rows.reverse().map(([part, value]) => element('div', {}, element('i', { className: 'swatch', css: { '--c': part.colour } }), `${part.label} ${quantity(value, 'J', 4)}`)),
+      element('div', {}, `Total ${quantity(frame.ledger[TOTAL] - this.lowest, 'J', 5)}`),
+      element('div', { className: 'muted' }, `since the start ${quantity(frame.ledger[RESIDUAL], 'J', 2)}`),
+    );
+    const right = at > this.width / 2;
+    this.tip.style.left = right ? '' : `${at + 10}px`;
+    this.tip.style.right = right ? `${this.width - at + 10}px` : '';
+  }
+}

@@ -1,0 +1,218 @@
+// The picture: which parts are drawn in which order, how large shadows are, what to do when it is slow.
+
+import { Arrows } from './arrows.js';
+import { Bodies } from './bodies.js';
+import { attribute, buffer, freeShadowMap, program, setView, shadowMap } from './gl.js';
+import { Lines } from './lines.js';
+import { add, cross, dot, length, multiply, normalize, rotate, scale, sub, viewOf } from './math.js';
+import { Room } from './room.js';
+import { SKY_FRAGMENT, SKY_VERTEX } from './shaders.js';
+
+// from fine to coarse: pixels for each CSS pixel, size of the shadow map, looks into it
+const LEVELS = [
+  { ratio: 2, shadow: 2048, taps: 20 },
+  { ratio: 1.5, shadow: 2048, taps: 12 },
+  { ratio: 1, shadow: 1024, taps: 10 },
+  { ratio: 0.75, shadow: 512, taps: 6 },
+  { ratio: 0.5, shadow: 512, taps: 3 },
+];
+const SLOW = 40; // ms
+const PATIENCE = 10; // frames
+
+// the ball that holds what there is to see: the box, or where the bodies go
+export function extent(head, film) {
+  const points = [];
+  const { box } = head;
+  if (box) {
+    for (let i = 0; i < 8; i++) {
+      points.push(rotate(box.orientation, [0, 1, 2].map((k) => ((i >> k) & 1 ? box.max[k] : box.min[k]))));
+    }
+  }
+  const size = Math.max(...head.bodies.map((body) => head.shapes[body.shape].radius), 1e-6);
+  const reach = box ? 0.5 * length(sub(box.max, box.min)) : Infinity;
+  const middle = box ? scale(points.reduce(add), 1 / 8) : [0, 0, 0];
+  const step = Math.max(1, Math.floor(film.length / 400));
+  for (let i = 0; i < film.length; i += step) {
+    const { bodies } = film.frames[i];
+    for (let at = 0; at < bodies.length; at += 22) {
+      const p = Array.from(bodies.subarray(at, at + 3));
+      // one that has left the box for good is not worth a smaller picture
+      if (p.every(Number.isFinite) && length(sub(p, middle)) < 1.6 * reach) points.push(p);
+    }
+  }
+  if (!points.length) return { centre: [0, 0, 0], radius: 2 * size };
+  const low = [0, 1, 2].map((k) => points.reduce((m, p) => Math.min(m, p[k]), Infinity));
+  const high = [0, 1, 2].map((k) => points.reduce((m, p) => Math.max(m, p[k]), -Infinity));
+  const half = 0.5 * length(sub(high, low));
+  return { centre: scale(add(low, high), 0.5), radius: box ? Math.max(half, size) : half + 1.2 * size };
+}
+
+export class Scene {
+  constructor(canvas, head, film, software) {
+    this.canvas = canvas;
+    this.head = head;
+    // a picture in software is drawn with fewer pixels from the start
+    this.level = software ? 2 : 0;
+    this.gl = canvas.getContext('webgl2', { antialias: true, alpha: false, powerPreference: 'high-performance' });
+    this.extent = extent(head, film);
+    this.slow = 0;
+    this.timed = 0;
+    this.build();
+  }
+
+  build() {
+    const { gl, head } = this;
+    // of a context that was lost and came back, nothing is left
+    this.shadow = null;
+    this.bodies = new Bodies(gl, head);
+    this.room = new Room(gl, head, this.extent);
+    this.lines = new Lines(gl, head);
+    this.arrows = new Arrows(gl);
+    this.sky = program(gl, SKY_VERTEX, SKY_FRAGMENT);
+    this.screen = gl.createVertexArray();
+    gl.bindVertexArray(this.screen);
+    buffer(gl, new Float32Array([-1, -1, 3, -1, -1, 3]));
+    attribute(gl, 0, 2, 8, 0);
+    gl.bindVertexArray(null);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    this.makeShadow();
+  }
+
+  // before another scene takes the canvas; the browser frees what nothing holds any more
+  dispose() {
+    freeShadowMap(this.gl, this.shadow);
+    this.shadow = null;
+  }
+
+  makeShadow() {
+    if (this.shadow) freeShadowMap(this.gl, this.shadow);
+    this.shadow = shadowMap(this.gl, LEVELS[this.level].shadow);
+  }
+
+  setExtent(bounds) {
+    this.extent = bounds;
+    this.room = new Room(this.gl, this.head, bounds);
+  }
+
+  // milliseconds between two frames that followed each other at once
+  time(milliseconds) {
+    this.slow += milliseconds > SLOW ? 1 : -0.5;
+    this.slow = Math.max(this.slow, -PATIENCE);
+    if (this.slow < PATIENCE || this.level === LEVELS.length - 1) return;
+    this.level += 1;
+    this.slow = 0;
+    this.makeShadow();
+  }
+
+  get ratio() {
+    return Math.min(window.devicePixelRatio || 1, LEVELS[this.level].ratio);
+  }
+
+  resize(width, height) {
+    const w = Math.max(Math.round(width * this.ratio), 1);
+    const h = Math.max(Math.round(height * this.ratio), 1);
+    if (this.canvas.width !== w || this.canvas.height !== h) {
+      this.canvas.width = w;
+      this.canvas.height = h;
+    }
+  }
+
+  // parallel light from above, over everything that may throw a shadow
+  light(view) {
+    const { centre, radius } = this.extent;
+    const up = normalize(this.head.up);
+    const side = normalize(cross(up, Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0]));
+    const front = cross(side, up);
+    const sun = normalize(add(scale(up, 1), add(scale(front, 0.28), scale(side, -0.2))));
+    const right = normalize(cross(up, sun));
+    const upward = cross(sun, right);
+    const reach = 1.15 * radius;
+    const ortho = new Float32Array(16);
+    ortho[0] = ortho[5] = 1 / reach;
+    ortho[10] = -1 / (2 * reach);
+    ortho[15] = 1;
+    view.sun = sun;
+    view.lightMatrix = multiply(ortho, viewOf(centre, right, upward, sun));
+    view.taps = dot(up, up) > 0 ? LEVELS[this.level].taps : 0;
+    view.softness = 0.0075;
+    view.texel = (3.2 * reach) / this.shadow.size;
+  }
+
+  // everything once; `shows` says what
+  draw(view, moment, film, shows) {
+    const { gl, bodies } = this;
+    this.light(view);
+    view.theme = shows.theme;
+    if (moment.frame) bodies.place(moment, shows.emphasis);
+    this.drawShadow(view, moment);
+    gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+    gl.activeTexture(gl.TEXTURE0);
+    gl.bindTexture(gl.TEXTURE_2D, this.shadow.texture);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    this.drawSky(view);
+    gl.enable(gl.BLEND);
+    if (shows.walls) this.room.draw(view);
+    gl.disable(gl.BLEND);
+    if (moment.frame && shows.meshes) bodies.draw(view);
+    gl.enable(gl.BLEND);
+    if (moment.frame && shows.edges) bodies.drawEdges(view);
+    const pixels = [this.canvas.width, this.canvas.height];
+    if (moment.frame) bodies.drawParticles(view, shows.particles, pixels);
+    if (shows.walls) this.lines.drawFrame(view, this.ratio);
+    if (shows.paths) this.lines.drawPaths(view, this.ratio, moment, film, shows.pathColour);
+    if (shows.thread) {
+      this.lines.begin(view, pixels);
+      this.lines.segment(...shows.thread, [...view.theme.ink, 0.9], 1.2 * this.ratio);
+    }
+    this.arrows.drawEllipsoids(view, shows.ellipsoids, view.theme.ink);
+    this.arrows.draw(view, shows.arrows, shows.thickness);
+    gl.disable(gl.BLEND);
+    gl.bindVertexArray(null);
+  }
+
+  drawShadow(view, moment) {
+    const { gl, shadow } = this;
+    gl.bindFramebuffer(gl.FRAMEBUFFER, shadow.target);
+    gl.viewport(0, 0, shadow.size, shadow.size);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    if (moment.frame) {
+      gl.enable(gl.POLYGON_OFFSET_FILL);
+      gl.polygonOffset(1.5, 3);
+      this.bodies.drawDepth({ ...view, matrix: view.lightMatrix });
+      gl.disable(gl.POLYGON_OFFSET_FILL);
+    }
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  drawSky(view) {
+    const { gl, sky } = this;
+    setView(gl, sky, view);
+    gl.uniform3fv(sky.at.top, view.theme.top);
+    gl.uniform3fv(sky.at.bottom, view.theme.bottom);
+    gl.bindVertexArray(this.screen);
+    gl.disable(gl.DEPTH_TEST);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.enable(gl.DEPTH_TEST);
+  }
+
+  // the colour of a CSS pixel of the picture that was just drawn
+  pixel(x, y) {
+    const { gl } = this;
+    const out = new Uint8Array(4);
+    gl.readPixels(Math.round(x * this.ratio), this.canvas.height - 1 - Math.round(y * this.ratio), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, out);
+    return Array.from(out);
+  }
+}
+
+// Whether there is WebGL2 at all, and whether a graphics card does it: 'none', 'software' or 'card'.
+export function support() {
+  const probe = (options) => document.createElement('canvas').getContext('webgl2', options);
+  const any = probe({});
+  if (!any) return 'none';
+  any.getExtension('WEBGL_lose_context')?.loseContext();
+  const fast = probe({ failIfMajorPerformanceCaveat: true });
+  fast?.getExtension('WEBGL_lose_context')?.loseContext();
+  return fast ? 'card' : 'software';
+}
