@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tungstenite::protocol::CloseFrame;
 use tungstenite::{Bytes, Message, Utf8Bytes};
@@ -158,17 +158,19 @@ impl Hub {
 
     /// The next thing that a page is to be told, waited for if need be.
     pub fn next(&self, page: PageId, seen: &mut Seen, patience: Duration) -> Next {
+        let deadline = Instant::now() + patience;
         let mut inner = self.lock();
         loop {
             if let Some(next) = inner.next(page, seen) {
                 return next;
             }
-            let (guard, timeout) =
-                self.changed.wait_timeout(inner, patience).unwrap_or_else(PoisonError::into_inner);
-            inner = guard;
-            if timeout.timed_out() {
-                return inner.next(page, seen).unwrap_or(Next::Nothing);
+            // what is news to others wakes this page too
+            let left = deadline.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Next::Nothing;
             }
+            let woken = self.changed.wait_timeout(inner, left);
+            inner = woken.unwrap_or_else(PoisonError::into_inner).0;
         }
     }
 }
