@@ -171,7 +171,8 @@ impl Session {
             };
             setting::transplant(&self.world, &mut world)?;
             // what the person's hand has changed is no error of the integrator
-            self.baseline += world.energy().total() - self.world.energy().total();
+            let residual = self.world.energy().total() - self.baseline;
+            self.baseline = world.energy().total() - residual;
             (self.scene, self.world, self.owed) = (scene, world, 0.0);
         } else if !self.pending.contains(&new.key) {
             self.pending.push(new.key.clone());
