@@ -18,9 +18,8 @@ trap 'rm -rf "$out"' EXIT
 for scene in task2 task2-cat racket many slope; do
     "$tumble" run "$scene" --out "$out/$scene" >/dev/null
 done
-"$tumble" run many --out "$out/crowd" --duration 0.5 --set body.0.copies.count="[10,5,10]" \
-    --set body.1.copies.count="[10,5,10]" --set body.0.copies.spacing="[0.18,0.2,0.18]" \
-    --set body.1.copies.spacing="[0.18,0.2,0.18]" --set body.1.position="[0.0,2.5,0.0]" >/dev/null || true
+"$tumble" run many --out "$out/crowd" --duration 0.5 --set 'body.1.position=[0.0,2.5,0.0]' \
+    --set 'body.0.copies={count=[10,5,10],spacing=[0.18,0.2,0.18],seed=1}' \
+    --set 'body.1.copies={count=[10,5,10],spacing=[0.18,0.2,0.18],seed=2}' >/dev/null
 
-export NODE_PATH=$PWD/e2e/.tools/node_modules
-node e2e/page.mjs "$out" "${1:-}"
+node e2e/page.mjs "$out" "$@"

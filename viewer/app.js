@@ -1,6 +1,6 @@
 // The page as one thing: what is shown, at which time, seen from where, and what happens next.
 
-import { AT, Film, Moment, decodeHead } from './data.js';
+import { Film, Moment, decodeHead } from './data.js';
 import { Camera, steer } from './camera.js';
 import { Overlays } from './overlays.js';
 import { Panel } from './panel.js';
@@ -12,10 +12,9 @@ import { Table } from './table.js';
 import { Timeline } from './timeline.js';
 import { bodyColours } from './bodies.js';
 import { byId, element } from './dom.js';
-import { length, scale } from './math.js';
 import { helpDialog } from './keys.js';
 import { pickBody } from './pick.js';
-import { quantity } from './format.js';
+import { count, quantity } from './format.js';
 
 // of more bodies only the selected one leaves a path
 const MANY_PATHS = 64;
@@ -75,8 +74,8 @@ export class App {
     const { name, description, duration, live, bodies } = this.head;
     byId('name').textContent = name;
     byId('description').textContent = description ?? '';
-    const count = bodies.length === 1 ? 'one body' : `${bodies.length} bodies`;
-    byId('facts').textContent = live ? `${count}, running now` : `${count}, ${quantity(this.film.end || duration, 's')}`;
+    const many = bodies.length === 1 ? 'one body' : `${count(bodies.length)} bodies`;
+    byId('facts').textContent = live ? `${many}, running now` : `${many}, ${quantity(this.film.end || duration, 's')}`;
     document.title = `${name} – tumble`;
   }
 
@@ -98,7 +97,7 @@ export class App {
   // once: the canvas and the window
   listen() {
     const { canvas } = this;
-    steer(canvas, this.cameraProxy(), {
+    const pointers = steer(canvas, this.cameraProxy(), {
       changed: () => this.moved(),
       panned: () => this.unfollow(),
       hover: (at) => this.hover(at),
@@ -107,6 +106,7 @@ export class App {
       drag: (at) => this.grab?.move(this.rayAt(at), this.view().back),
       up: () => this.grab?.end(),
     });
+    this.isHeld = pointers.isHeld;
     canvas.addEventListener('dblclick', () => this.whole());
     canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
     canvas.addEventListener('webglcontextrestored', () => {
@@ -180,7 +180,9 @@ export class App {
       this.dirty = false;
       this.show();
     }
-    const goesOn = this.player.playing;
+    const goesOn = this.player.playing || (this.link?.status.playing ?? false);
+    clearTimeout(this.still);
+    if (!goesOn && this.scene?.isCoarse) this.still = setTimeout(() => this.drawFine(), 350);
     if (goesOn && since) this.scene?.time(since);
     this.last = goesOn ? now : 0;
     if (goesOn || this.dirty) this.request();
@@ -225,9 +227,17 @@ export class App {
       pathColour: (body) => [...scene.bodies.colours[body], body === this.selected ? 1 : alpha],
       arrows,
       ellipsoids: moment.frame ? overlays.ellipsoids(moment, this.selected) : [],
-      thickness: 0.0042 * this.camera.distance,
+      thickness: 0.0062 * this.camera.breadth(),
       thread: this.grab?.thread(this.head, moment) ?? null,
     });
+  }
+
+  // a picture that stands still may take its time
+  drawFine() {
+    if (this.asked || this.isHeld()) return;
+    this.scene.fine = true;
+    this.draw();
+    this.scene.fine = false;
   }
 
   updatePaths() {
@@ -238,7 +248,7 @@ export class App {
     const key = `${wanted.length} ${wanted[0]} ${film.length} ${film.end} ${film.dropped}`;
     if (made && made.key === key) return;
     const now = performance.now();
-    if (made && this.head.live && now - made.at < 200 && made.film === film && film.length >= made.made) return;
+    if (made && this.head.live && now - made.at < 200 && made.film === film && made.made > 1 && film.length >= made.made) return;
     scene.lines.setPaths(film, wanted);
     Object.assign(scene.lines.paths, { key, at: now, film });
   }
@@ -274,7 +284,8 @@ export class App {
   liveFrame(buffer) {
     const { film } = this;
     if (!film.push(buffer)) return;
-    this.overlays.learn(film.frames.at(-1), this.moment);
+    // of a crowd a look now and then will do
+    if (this.head.bodies.length < 200 || film.length % 10 === 1) this.overlays.learn(film.frames.at(-1), this.moment);
     this.learnForces();
     if (film.length === 1 && !this.ownView && !this.head.box) this.seeAround();
     this.dirty = true;
@@ -295,11 +306,11 @@ export class App {
     this.request();
   }
 
+  // the scale of the particles' colours
   learnForces() {
-    if (!this.scene) return;
-    const lightest = Math.min(...this.head.bodies.map((body) => body.particle_mass));
-    const weight = lightest * length(this.head.gravity);
-    this.scene.bodies.strongest = Math.max(0.3 * this.overlays.largest.contact, 10 * weight, 1e-9);
+    if (!this.scene || (this.hardest && this.hardest === this.overlays.hardest)) return;
+    this.hardest = this.overlays.hardest;
+    this.scene.bodies.strongest = Math.max(this.overlays.strongestOnParticle(), 1e-9);
   }
 
   // what keys and buttons do
@@ -376,9 +387,9 @@ export class App {
   }
 
   selectNext(by) {
-    const { length: count } = this.head.bodies;
+    const { length: all } = this.head.bodies;
     const from = this.selected ?? (by > 0 ? -1 : 0);
-    this.select((from + by + count) % count);
+    this.select((from + by + all) % all);
   }
 
   follow() {
@@ -455,16 +466,20 @@ export class App {
 
   // what tests and the curious may ask
   api() {
+    const now = () => {
+      this.moment.set(this.film, this.player.time);
+      return this.moment;
+    };
     return {
-      project: (body) => this.camera.project(this.view(), this.moment.position(body)),
+      seek: (time) => this.player.seek(time),
+      position: (body) => now().position(body),
+      project: (body) => this.camera.project(this.view(), now().position(body)),
+      // red, green, blue, alpha of the picture at a place in CSS pixels
       pixel: (x, y) => {
+        now();
         this.draw();
         return this.scene?.pixel(x, y) ?? null;
       },
-      position: (body) => this.moment.position(body),
-      force: (body) => this.moment.vector(body, AT.force),
-      seek: (time) => this.player.seek(time),
-      weight: (body) => scale(this.head.gravity, this.head.bodies[body].mass),
       app: this,
     };
   }

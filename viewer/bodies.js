@@ -1,7 +1,7 @@
 // Bodies: one draw call for all that share a shape, each in its place by an instance buffer.
 
 import { attribute, buffer, program, setView } from './gl.js';
-import { corners, edges } from './geometry.js';
+import { coarse, corners, edges } from './geometry.js';
 import { BODY_COLOURS } from './palette.js';
 import { BODY_FRAGMENT, BODY_VERTEX, DEPTH_FRAGMENT, EDGE_FRAGMENT, EDGE_VERTEX } from './shaders.js';
 import { PARTICLE_FRAGMENT, PARTICLE_VERTEX } from './shaders.js';
@@ -10,6 +10,8 @@ const FLOATS = 12; // place, picked; turn; colour, markings
 const MOST_WALLS = 32;
 // a mesh of more edges than this is a grey mist, not a drawing
 const MOST_EDGES = 60000;
+// triangles of all bodies together that are drawn roughly, about
+const ROUGH = 60000;
 
 export class Bodies {
   constructor(gl, head) {
@@ -29,6 +31,7 @@ export class Bodies {
     this.stiffness = new Float32Array(MOST_WALLS);
     this.setWalls();
     this.strongest = 1;
+    this.isRough = false;
   }
 
   setWalls() {
@@ -52,15 +55,8 @@ export class Bodies {
     const { gl } = this;
     const first = this.order.findIndex((body) => this.head.bodies[body].shape === index);
     const count = this.head.bodies.filter((body) => body.shape === index).length;
-    const data = corners(shape.vertices, shape.triangles);
-    const drawn = { first, count, shape, cornerCount: data.length / 6, edgeArray: null, edgeCount: 0 };
-    if (data.length) {
-      drawn.mesh = this.array(first, () => {
-        buffer(gl, data);
-        attribute(gl, 0, 3, 24, 0);
-        attribute(gl, 1, 3, 24, 12);
-      });
-    }
+    const drawn = { first, count, shape, mesh: null, rough: null, edgeArray: null, edgeCount: 0 };
+    if (shape.triangles.length) drawn.mesh = this.mesh(first, shape.vertices, shape.triangles);
     drawn.points = this.array(first, () => {
       buffer(gl, shape.particles);
       attribute(gl, 0, 3, 12, 0);
@@ -69,6 +65,37 @@ export class Bodies {
     // how far particles are apart, about: on a surface of the body's size
     drawn.pointRadius = 0.35 * shape.radius * Math.min(Math.sqrt(4 / Math.max(drawn.pointCount, 1)), 0.35);
     return drawn;
+  }
+
+  mesh(first, vertices, triangles) {
+    const { gl } = this;
+    const { data, index } = corners(vertices, triangles);
+    const array = this.array(first, () => {
+      buffer(gl, data);
+      attribute(gl, 0, 3, 24, 0);
+      attribute(gl, 1, 3, 24, 12);
+      buffer(gl, index, gl.ELEMENT_ARRAY_BUFFER);
+    });
+    return { array, count: index.length };
+  }
+
+  // of a shape with many triangles and many bodies
+  roughMesh(group) {
+    if (!group.rough) {
+      const { vertices, triangles, radius } = group.shape;
+      let less = { vertices, triangles };
+      const most = Math.max(ROUGH / this.head.bodies.length, 32);
+      for (const part of [0.2, 0.28, 0.4, 0.55]) {
+        if (less.triangles.length > 3 * most) less = coarse(vertices, triangles, part * radius);
+      }
+      group.rough = this.mesh(group.first, less.vertices, less.triangles);
+    }
+    return group.rough;
+  }
+
+  // how many triangles a picture has
+  get triangleCount() {
+    return this.groups.reduce((sum, { mesh, count }) => sum + (mesh ? (mesh.count / 3) * count : 0), 0);
   }
 
   // a vertex array with the instances from `first` on
@@ -124,8 +151,9 @@ export class Bodies {
     setView(gl, how, view);
     for (const group of this.groups) {
       if (!group.mesh || !group.count) continue;
-      gl.bindVertexArray(group.mesh);
-      gl.drawArraysInstanced(gl.TRIANGLES, 0, group.cornerCount, group.count);
+      const { array, count } = this.isRough ? this.roughMesh(group) : group.mesh;
+      gl.bindVertexArray(array);
+      gl.drawElementsInstanced(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0, group.count);
     }
   }
 

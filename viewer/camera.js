@@ -61,6 +61,11 @@ export class Camera {
     return { right, upward: cross(back, right), back };
   }
 
+  // how much of the world the picture shows at the target, along its shorter side (m)
+  breadth() {
+    return (2 * this.distance * Math.tan(FOV / 2) * Math.min(...this.free())) / this.size[1];
+  }
+
   // what a frame needs of it, for a picture of so many CSS pixels
   view(width, height) {
     this.size = [width, height];

@@ -171,4 +171,10 @@ export class Moment {
     const from = BODY_SIZE * body + at;
     return Array.from(this.frame.bodies.subarray(from, from + 3));
   }
+
+  // orientation at the frame before
+  turnOf(body) {
+    const from = BODY_SIZE * body + AT.orientation;
+    return Array.from(this.frame.bodies.subarray(from, from + 4));
+  }
 }

@@ -39,3 +39,13 @@ export function round125(x) {
   const rest = x / power;
   return (rest < 1.5 ? 1 : rest < 3.5 ? 2 : rest < 7.5 ? 5 : 10) * power;
 }
+
+// the components of a vector with as many places as its largest one calls for
+export function vector(v) {
+  const largest = Math.max(...v.map(Math.abs));
+  if (!(largest > 0) || largest >= 1e5 || largest < 1e-3) return v.map((x) => (Math.abs(x) < 1e-6 * largest ? '0' : number(x))).join('  ');
+  const places = clampPlaces(2 - Math.floor(Math.log10(largest)));
+  return v.map((x) => x.toFixed(places).replace(/^-(0\.?0*)$/, '$1').replace('-', '−')).join('  ');
+}
+
+export const count = (n) => String(n).replace(/\B(?=(\d{3})+(?!\d))/g, '\u2009');

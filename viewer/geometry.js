@@ -4,22 +4,29 @@ const CREASE = Math.cos((38 * Math.PI) / 180);
 // a body of so few triangles is shown as what it is: flat faces
 const FLAT = 200;
 
-// position and normal of every corner, six floats each
+// The corners of all triangles, position and normal, six floats each, and three indices a triangle. Corners
+// of one vertex whose normals agree are one, so that a card computes them once.
 export function corners(vertices, triangles) {
-  const count = triangles.length / 3;
-  const out = new Float32Array(count * 18);
   const faces = faceNormals(vertices, triangles);
-  const around = count > FLAT ? facesAround(vertices, triangles) : null;
-  for (let t = 0; t < count; t++) {
-    for (let c = 0; c < 3; c++) {
-      const at = 6 * (3 * t + c);
-      const vertex = triangles[3 * t + c];
-      for (let k = 0; k < 3; k++) out[at + k] = vertices[3 * vertex + k];
-      const n = around ? smooth(faces, around, t, vertex) : faces.unit.subarray(3 * t, 3 * t + 3);
-      out.set(n, at + 3);
+  const around = triangles.length / 3 > FLAT ? facesAround(vertices, triangles) : null;
+  const out = [];
+  const index = new Uint32Array(triangles.length);
+  const known = new Map();
+  triangles.forEach((vertex, i) => {
+    const t = Math.floor(i / 3);
+    const n = around ? smooth(faces, around, t, vertex) : faces.unit.subarray(3 * t, 3 * t + 3);
+    const key = known.get(vertex);
+    const same = key?.find((corner) => Math.abs(out[6 * corner + 3] - n[0]) + Math.abs(out[6 * corner + 4] - n[1]) + Math.abs(out[6 * corner + 5] - n[2]) < 1e-3);
+    if (same !== undefined) {
+      index[i] = same;
+      return;
     }
-  }
-  return out;
+    index[i] = out.length / 6;
+    out.push(vertices[3 * vertex], vertices[3 * vertex + 1], vertices[3 * vertex + 2], n[0], n[1], n[2]);
+    if (key) key.push(index[i]);
+    else known.set(vertex, [index[i]]);
+  });
+  return { data: new Float32Array(out), index };
 }
 
 // unit normals, and areas to weigh them by
@@ -87,6 +94,32 @@ function smooth({ unit, area }, { group, starts, list }, t, vertex) {
   }
   const l = Math.hypot(x, y, z);
   return l > 0 ? [x / l, y / l, z / l] : [nx, ny, nz];
+}
+
+// A coarser mesh, for many bodies on a slow machine: vertices within one cell of a grid become one.
+export function coarse(vertices, triangles, cell) {
+  const cells = new Map();
+  const points = [];
+  const group = new Uint32Array(vertices.length / 3);
+  for (let v = 0; v < group.length; v++) {
+    const p = vertices.subarray(3 * v, 3 * v + 3);
+    const key = Array.from(p, (x) => Math.round(x / cell)).join(',');
+    if (!cells.has(key)) {
+      cells.set(key, points.length / 3);
+      points.push(...p);
+    }
+    group[v] = cells.get(key);
+  }
+  const kept = [];
+  const seen = new Set();
+  for (let t = 0; t < triangles.length; t += 3) {
+    const corner = [group[triangles[t]], group[triangles[t + 1]], group[triangles[t + 2]]];
+    const key = corner.slice().sort((a, b) => a - b).join(',');
+    if (new Set(corner).size < 3 || seen.has(key)) continue;
+    seen.add(key);
+    kept.push(...corner);
+  }
+  return { vertices: new Float32Array(points), triangles: new Uint32Array(kept) };
 }
 
 // both ends of every edge, once, as indices

@@ -57,17 +57,17 @@ export class Lines {
       gl.deleteVertexArray(this.paths.array);
     }
     const total = Math.max(film.length * bodies.length, 1);
-    const stride = Math.max(Math.ceil(total / MOST_POINTS), 1);
-    const each = Math.floor((film.length - 1) / stride) + 1;
+    const every = Math.max(Math.ceil(total / MOST_POINTS), 1);
+    const each = Math.floor((film.length - 1) / every) + 1;
     const points = new Float32Array(3 * each * bodies.length);
     bodies.forEach((body, b) => {
       for (let i = 0; i < each; i++) {
-        const { bodies: floats } = film.frames[i * stride];
+        const { bodies: floats } = film.frames[i * every];
         const at = BODY_SIZE * body;
         points.set(floats.subarray(at, at + 3), 3 * (b * each + i));
       }
     });
-    this.paths = { ...this.array(points, 12, gl.STATIC_DRAW), each, stride, bodies, made: film.length, dropped: film.dropped };
+    this.paths = { ...this.array(points, 12, gl.STATIC_DRAW), each, every, bodies, made: film.length, dropped: film.dropped };
   }
 
   begin(view, pixels) {
@@ -96,16 +96,16 @@ export class Lines {
   // up to the moment that is shown
   drawPaths(view, ratio, moment, film, colourOf) {
     const { gl, paths } = this;
-    if (!paths || !moment.frame) return;
+    if (!paths || !moment.frame || paths.each < 1) return;
     this.begin(view, [view.width * ratio, view.height * ratio]);
-    const done = Math.min(Math.floor(moment.index / paths.stride), paths.each - 1);
+    const done = Math.min(Math.floor(moment.index / paths.every), paths.each - 1);
     paths.bodies.forEach((body, b) => {
       const colour = colourOf(body);
       gl.bindVertexArray(paths.array);
       this.aim(paths, b * paths.each);
       this.stroke(paths, done, colour, 1.2 * ratio, [0, done + 1]);
       // and from the last point to where the body is now
-      const { bodies: floats } = film.frames[Math.min(done * paths.stride, film.length - 1)];
+      const { bodies: floats } = film.frames[Math.min(done * paths.every, film.length - 1)];
       const last = floats.subarray(BODY_SIZE * body, BODY_SIZE * body + 3);
       this.segment(last, moment.position(body), colour, 1.2 * ratio);
     });

@@ -2,7 +2,7 @@
 
 import { AT } from './data.js';
 import { button, element } from './dom.js';
-import { number, quantity } from './format.js';
+import { count, quantity, vector } from './format.js';
 import { length } from './math.js';
 import { QUANTITIES } from './overlays.js';
 
@@ -70,10 +70,9 @@ export class Panel {
 
   bodySection() {
     const { app } = this;
-    const count = app.head.bodies.length;
     this.follow = button('Keep the selected body in the middle (C)', 'Follow', () => app.follow(), 'Follow');
     this.follow.setAttribute('aria-pressed', 'false');
-    return this.section('bodies', count === 1 ? 'Body' : `${number(count, 9)} bodies`, true, app.table.scroll, this.detail);
+    return this.section('bodies', app.head.bodies.length === 1 ? 'Body' : `${count(app.head.bodies.length)} bodies`, true, app.table.scroll, this.detail);
   }
 
   about() {
@@ -82,7 +81,7 @@ export class Panel {
       ['Scheme', head.integrator === 'splitting' ? 'splitting: exact flight, kicks in contact' : `${head.integrator}: the basic scheme`],
       ['Step', quantity(head.dt, 's')],
       ['Gravity', quantity(length(head.gravity), 'm/s²')],
-      ['Particles', number(head.bodies.reduce((n, b) => n + head.shapes[b.shape].particle_count, 0), 9)],
+      ['Particles', count(head.bodies.reduce((n, b) => n + head.shapes[b.shape].particle_count, 0))],
     ];
     if (!head.live) rows.push(['Frames', thinned(head, film)]);
     const list = rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]);
@@ -98,10 +97,10 @@ export class Panel {
     this.carrier.textContent = carriers.length ? '' : 'Select a body: it will carry the arrows.';
     this.carrier.hidden = carriers.length > 0;
     for (const row of document.querySelectorAll('.check.arrow')) {
-      const { colour } = QUANTITIES.find(({ key }) => key === row.dataset.key);
+      const shown = QUANTITIES.find(({ key }) => key === row.dataset.key);
+      const { colour, label, unit } = shown;
       row.style.setProperty('--c', colour[app.themeName]);
-      const metres = app.overlays.metres(row.dataset.key);
-      const { label, unit } = QUANTITIES.find(({ key }) => key === row.dataset.key);
+      const metres = app.overlays.metres(shown, carriers);
       row.title = metres > 0 ? `${label}: an arrow of 1 m stands for ${quantity(1 / metres, unit, 2)}` : `${label}: zero so far`;
     }
     this.ramp.hidden = !app.shows.particles || !app.head.walls.length;
@@ -132,8 +131,7 @@ export class Panel {
       return;
     }
     if (this.detailOf !== body) this.buildDetail(body);
-    const text = (v) => v.map((x) => number(x)).join('  ');
-    this.cells.forEach(([node, at]) => (node.textContent = text(moment.vector(body, at))));
+    this.cells.forEach(([node, at]) => (node.textContent = vector(moment.vector(body, at))));
   }
 
   buildDetail(body) {
@@ -145,13 +143,13 @@ export class Panel {
     const parts = rows.flatMap(([label, unit], i) => [element('dt', {}, label, element('small', {}, unit)), this.cells[i][0]]);
     this.detail.replaceChildren(
       element('div', { className: 'top' }, element('b', {}, name), element('span', { className: 'muted' }, quantity(mass, 'kg')), this.follow),
-      element('dl', {}, element('dt', {}, 'Moments', element('small', {}, 'kg·m²')), element('dd', {}, moments.map((m) => number(m)).join('  ')), ...parts),
+      element('dl', {}, element('dt', {}, 'Moments', element('small', {}, 'kg·m²')), element('dd', {}, vector(moments)), ...parts),
     );
   }
 }
 
 function thinned(head, film) {
   const { frames_recorded: all, frame_count: kept } = head;
-  if (!all || all === kept) return `${number(film.length, 9)}, every ${quantity(head.interval, 's')}`;
-  return `${number(kept, 9)} of ${number(all, 9)}: the page keeps what fits; trajectory.csv has them all`;
+  if (!all || all === kept) return `${count(film.length)}, every ${quantity(head.interval, 's')}`;
+  return `${count(kept)} of ${count(all)}: the page keeps what fits; trajectory.csv has them all`;
 }

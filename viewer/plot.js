@@ -53,7 +53,7 @@ export class Plot {
 
   span() {
     const { film } = this.player;
-    return [film.start, Math.max(film.end, film.start + 1e-9)];
+    return [film.start, film.end > film.start ? film.end : film.start + 1];
   }
 
   timeAt(x) {

@@ -14,8 +14,12 @@ const LEVELS = [
   { ratio: 1.5, shadow: 2048, taps: 12 },
   { ratio: 1, shadow: 1024, taps: 10 },
   { ratio: 0.75, shadow: 512, taps: 6 },
-  { ratio: 0.5, shadow: 512, taps: 3 },
+  { ratio: 0.5, shadow: 256, taps: 0 },
 ];
+// of so many triangles a slow machine draws rough bodies
+const HEAVY = 150000;
+// a picture that stands still is at least this fine
+const STILL = 2;
 const SLOW = 40; // ms
 const PATIENCE = 10; // frames
 
@@ -51,19 +55,20 @@ export class Scene {
   constructor(canvas, head, film, software) {
     this.canvas = canvas;
     this.head = head;
-    // a picture in software is drawn with fewer pixels from the start
-    this.level = software ? 2 : 0;
-    this.gl = canvas.getContext('webgl2', { antialias: true, alpha: false, powerPreference: 'high-performance' });
+    this.level = 0;
+    this.software = software;
+    this.gl = canvas.getContext('webgl2', { antialias: !software, alpha: false, powerPreference: 'high-performance' });
     this.extent = extent(head, film);
     this.slow = 0;
     this.timed = 0;
+    this.fine = false;
     this.build();
   }
 
   build() {
     const { gl, head } = this;
     // of a context that was lost and came back, nothing is left
-    this.shadow = null;
+    this.shadows = new Map();
     this.bodies = new Bodies(gl, head);
     this.room = new Room(gl, head, this.extent);
     this.lines = new Lines(gl, head);
@@ -77,18 +82,31 @@ export class Scene {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
-    this.makeShadow();
+    // a picture in software is drawn with fewer pixels from the start
+    if (this.software) this.level = Math.max(this.level, this.bodies.triangleCount > HEAVY ? LEVELS.length - 1 : 2);
   }
 
   // before another scene takes the canvas; the browser frees what nothing holds any more
   dispose() {
-    freeShadowMap(this.gl, this.shadow);
-    this.shadow = null;
+    for (const map of this.shadows.values()) freeShadowMap(this.gl, map);
+    this.shadows.clear();
   }
 
-  makeShadow() {
-    if (this.shadow) freeShadowMap(this.gl, this.shadow);
-    this.shadow = shadowMap(this.gl, LEVELS[this.level].shadow);
+  // the map of the level that is drawn now, made when it is first needed
+  get shadow() {
+    const { shadow: size } = LEVELS[this.now];
+    if (!this.shadows.has(size)) this.shadows.set(size, shadowMap(this.gl, size));
+    return this.shadows.get(size);
+  }
+
+  // the level of the picture that is drawn now
+  get now() {
+    return this.fine ? Math.min(this.level, STILL) : this.level;
+  }
+
+  // whether a picture that stands still could be finer
+  get isCoarse() {
+    return this.level > STILL && this.bodies.triangleCount <= HEAVY;
   }
 
   setExtent(bounds) {
@@ -98,16 +116,18 @@ export class Scene {
 
   // milliseconds between two frames that followed each other at once
   time(milliseconds) {
-    this.slow += milliseconds > SLOW ? 1 : -0.5;
-    this.slow = Math.max(this.slow, -PATIENCE);
+    // the first few pay for what the browser compiles
+    this.timed += 1;
+    if (this.timed < 6) return;
+    // one that is very slow counts for several
+    this.slow = Math.max(this.slow + (milliseconds > SLOW ? Math.min(milliseconds / SLOW, 0.35 * PATIENCE) : -0.5), -PATIENCE);
     if (this.slow < PATIENCE || this.level === LEVELS.length - 1) return;
     this.level += 1;
     this.slow = 0;
-    this.makeShadow();
   }
 
   get ratio() {
-    return Math.min(window.devicePixelRatio || 1, LEVELS[this.level].ratio);
+    return Math.min(window.devicePixelRatio || 1, LEVELS[this.now].ratio);
   }
 
   resize(width, height) {
@@ -135,7 +155,7 @@ export class Scene {
     ortho[15] = 1;
     view.sun = sun;
     view.lightMatrix = multiply(ortho, viewOf(centre, right, upward, sun));
-    view.taps = dot(up, up) > 0 ? LEVELS[this.level].taps : 0;
+    view.taps = dot(up, up) > 0 ? LEVELS[this.now].taps : 0;
     view.softness = 0.0075;
     view.texel = (3.2 * reach) / this.shadow.size;
   }
@@ -144,6 +164,7 @@ export class Scene {
   draw(view, moment, film, shows) {
     const { gl, bodies } = this;
     this.light(view);
+    bodies.isRough = this.now === LEVELS.length - 1 && bodies.triangleCount > HEAVY;
     view.theme = shows.theme;
     if (moment.frame) bodies.place(moment, shows.emphasis);
     this.drawShadow(view, moment);
@@ -177,7 +198,7 @@ export class Scene {
     gl.bindFramebuffer(gl.FRAMEBUFFER, shadow.target);
     gl.viewport(0, 0, shadow.size, shadow.size);
     gl.clear(gl.DEPTH_BUFFER_BIT);
-    if (moment.frame) {
+    if (moment.frame && view.taps > 0) {
       gl.enable(gl.POLYGON_OFFSET_FILL);
       gl.polygonOffset(1.5, 3);
       this.bodies.drawDepth({ ...view, matrix: view.lightMatrix });
@@ -208,11 +229,14 @@ export class Scene {
 
 // Whether there is WebGL2 at all, and whether a graphics card does it: 'none', 'software' or 'card'.
 export function support() {
-  const probe = (options) => document.createElement('canvas').getContext('webgl2', options);
-  const any = probe({});
-  if (!any) return 'none';
-  any.getExtension('WEBGL_lose_context')?.loseContext();
-  const fast = probe({ failIfMajorPerformanceCaveat: true });
-  fast?.getExtension('WEBGL_lose_context')?.loseContext();
-  return fast ? 'card' : 'software';
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) return 'none';
+  let name = String(gl.getParameter(gl.RENDERER));
+  // some browsers keep the name behind an extension, others complain when it is asked for
+  if (name === 'WebKit WebGL') {
+    const more = gl.getExtension('WEBGL_debug_renderer_info');
+    if (more) name = String(gl.getParameter(more.UNMASKED_RENDERER_WEBGL));
+  }
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name) ? 'software' : 'card';
 }

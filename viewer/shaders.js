@@ -27,10 +27,12 @@ float sunlight(vec3 place, vec3 normal, vec3 sun) {
   vec3 p = 0.5 * at.xyz / at.w + 0.5;
   if (any(lessThan(p.xy, vec2(0.0))) || any(greaterThan(p.xy, vec2(1.0))) || p.z > 1.0) return 1.0;
   float sum = 0.0;
+  // another turn of the pattern in each pixel: a fine grain instead of bands
+  float start = 6.2832 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   for (int i = 0; i < 32; i++) {
     if (i >= taps) break;
     float r = sqrt((float(i) + 0.5) / float(taps));
-    float a = 2.399963 * float(i);
+    float a = start + 2.399963 * float(i);
     sum += texture(shadowMap, vec3(p.xy + softness * r * vec2(cos(a), sin(a)), p.z));
   }
   return sum / float(taps);
@@ -211,7 +213,7 @@ void main() {
   float all = cover + (1.0 - cover) * dark;
   colour = mix(colour, colour * (1.0 - dark), opacity);
   colour = mix(colour, vec3(0.0), (1.0 - opacity) * dark / max(all, 1e-4));
-  result = vec4(colour, all) * edge;
+  result = vec4(colour * all, all) * edge;
 }`;
 
 // A thick line from a to b, straight on the screen.
@@ -293,7 +295,7 @@ in vec4 paint;
 out vec4 result;
 void main() {
   vec3 n = normalize(toward);
-  float light = 0.78 + 0.3 * dot(n, normalize(sun + 0.6 * normalize(eye - atWorld)));
+  float light = 0.74 + 0.38 * dot(n, normalize(sun + 0.5 * normalize(eye - atWorld)));
   float a = paint.a * strength;
   result = vec4(paint.rgb * light * a, a);
 }`;

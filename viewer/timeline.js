@@ -31,7 +31,9 @@ export class Timeline {
       type: 'range', id: 'slider', min: '0', max: '1000', step: 'any', value: '0', 'aria-label': 'Time',
       on: { input: () => this.scrub() },
     });
-    this.readout = element('output', { id: 'readout', htmlFor: 'slider' });
+    this.clock = element('span', {});
+    this.end = element('span', { className: 'end' });
+    this.readout = element('output', { id: 'readout', htmlFor: 'slider' }, this.clock, this.end, ' s');
     this.speed = element('select', { id: 'speed', title: 'Speed: simulated seconds a second (+ and −)', 'aria-label': 'Speed', on: { change: () => actions.speed(this.chosen()) } });
     for (const s of SPEEDS) this.speed.append(new Option(`${s} ×`, String(s)));
     if (head.live) this.speed.append(new Option('fastest', 'null'));
@@ -101,10 +103,10 @@ export class Timeline {
     else if (Math.abs(Number(this.slider.value) - 1000 * part) > 1e-6) this.slider.value = String(1000 * part);
     this.slider.style.setProperty('--part', `${100 * part}%`);
     const shown = time(now, this.head.interval);
-    const text = this.head.live ? `${shown} s` : `${shown} / ${time(film.end, this.head.interval)} s`;
-    if (this.readout.textContent !== text) {
-      this.readout.textContent = text;
-      this.slider.setAttribute('aria-valuetext', `${number(now, 4)} seconds`);
-    }
+    if (this.written === shown) return;
+    this.written = shown;
+    this.clock.textContent = shown;
+    this.end.textContent = this.head.live ? '' : ` / ${time(film.end, this.head.interval)}`;
+    this.slider.setAttribute('aria-valuetext', `${number(now, 4)} seconds`);
   }
 }

@@ -25,6 +25,7 @@ pub struct Head {
     integrator: &'static str,
     duration: f64,
     gravity: [f64; 3],
+    velocity_damping_stiffness: f64,
     up: [f64; 3],
     interval: f64,
     shapes: Vec<ShapeHead>,
@@ -67,6 +68,9 @@ struct ShapeHead {
     particles: Option<String>,
     particle_count: usize,
     radius: f64,
+    /// Σ rᵢ (m) and Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) (m²), by rows: what the force of drag needs.
+    first: [f64; 3],
+    second: [f64; 9],
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -112,6 +116,7 @@ impl Head {
             integrator: scene.integrator.name(),
             duration: scene.duration,
             gravity: gravity.to_array(),
+            velocity_damping_stiffness: scene.velocity_damping_stiffness,
             up: up.to_array(),
             interval: scene.output.interval,
             shapes,
@@ -165,6 +170,9 @@ fn of_shape(shape: &Shape) -> ShapeHead {
         particles: (!same).then(|| points(&particles)),
         particle_count: particles.len(),
         radius: shape.radius(),
+        first: shape.moments().first.to_array(),
+        // symmetric: columns are rows
+        second: shape.moments().second.to_cols_array(),
     }
 }
 
