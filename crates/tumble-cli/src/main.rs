@@ -6,6 +6,7 @@ mod run;
 mod scenes;
 mod table;
 mod verify;
+mod view;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -46,6 +47,8 @@ enum Command {
     Info(info::InfoArgs),
     /// Hold the physics against theory: expected, measured, bound, verdict
     Verify(verify::VerifyArgs),
+    /// Watch and change a simulation in the browser while it runs, or look at a finished run
+    View(view::ViewArgs),
 }
 
 fn main() -> ExitCode {
@@ -57,6 +60,7 @@ fn main() -> ExitCode {
         Command::Scenes(args) => scenes::scenes(&args),
         Command::Info(args) => info::info(&args),
         Command::Verify(args) => verify::verify(&args),
+        Command::View(args) => view::view(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

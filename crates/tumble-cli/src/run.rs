@@ -66,13 +66,17 @@ pub fn carry_out(
 fn load(args: &RunArgs) -> Result<Loaded, Failure> {
     let mut sets = args.set.clone();
     sets.extend(args.duration.iter().map(|seconds| format!("duration={seconds}")));
-    let options = LoadOptions { sets, force: args.force };
-    let path = Path::new(&args.scene);
-    let loaded = match load_builtin(&args.scene, &options) {
+    load_scene(&args.scene, &LoadOptions { sets, force: args.force })
+}
+
+/// The scene in a file, or the built-in one of that name.
+pub fn load_scene(scene: &str, options: &LoadOptions) -> Result<Loaded, Failure> {
+    let path = Path::new(scene);
+    let loaded = match load_builtin(scene, options) {
         // a file of that very name in the folder is still reached as ./NAME
         Some(loaded) => loaded,
-        None if path.exists() => load_file(path, &options),
-        None => return Err(Failure::Call(unknown_scene(&args.scene))),
+        None if path.exists() => load_file(path, options),
+        None => return Err(Failure::Call(unknown_scene(scene))),
     };
     loaded.map_err(|error| bad_scene(&error))
 }
@@ -96,7 +100,7 @@ pub fn failure(error: &RunError) -> Failure {
 
 /// A flag that the first Ctrl-C (or a request to terminate) raises; a second one ends at once.
 /// A hang-up is left alone, so that `nohup` and closed terminals do what they always do.
-fn stop_on_ctrl_c() -> Arc<AtomicBool> {
+pub fn stop_on_ctrl_c() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let set = [SIGINT, SIGTERM].into_iter().try_for_each(|signal| {
         // in this order: the flag of the first signal is what the second one finds

@@ -60,6 +60,18 @@ impl SceneError {
         self.problems.len()
     }
 
+    /// What is wrong in words alone, one entry a problem, for where there is no text to point at.
+    pub fn messages(&self) -> Vec<String> {
+        let words = |problem: &Problem| {
+            let message = cut(&problem.message, 2000);
+            match problem.key.as_str() {
+                "" => message,
+                key => format!("`{}` {message}", cut(key, 200)),
+            }
+        };
+        self.problems.iter().take(MOST_SHOWN).map(words).collect()
+    }
+
     /// All problems (of very many, the first hundred), each with file, line, column and the text
     /// it is about; with colours or not.
     pub fn render(&self, colour: bool) -> String {

@@ -1,0 +1,122 @@
+//! What a page may change, with its value, unit and a range that makes sense for a slider.
+
+use tumble::{DVec3, Damping, MaterialOverride};
+use tumble_io::page::Parameter;
+use tumble_io::scene::{BodyScene, MassScene, Scene};
+
+use crate::setting::applies_at_once;
+
+/// Of more bodies than this only the first are offered for changes.
+const MOST_BODIES: usize = 8;
+
+/// All that may be changed, in the order in which it is shown.
+pub fn parameters(scene: &Scene) -> Vec<Parameter> {
+    let mut list = List(Vec::new());
+    list.log("dt", scene.dt, "s", (1e-5, 1e-2));
+    list.vector("gravity", scene.gravity, "m/s²", 20.0);
+    list.linear(
+        "velocity_damping_stiffness",
+        scene.velocity_damping_stiffness,
+        "N·s/m",
+        (0.0, 5.0),
+    );
+    if let Some(tolerance) = scene.energy_tolerance {
+        list.log("energy_tolerance", tolerance, "", (1e-12, 1e-2));
+    }
+    list.material("collision", &scene.collision.into());
+    if let Some(own) = &scene.walls_of_box {
+        list.material("box", &own.material);
+    }
+    for (index, wall) in scene.walls.iter().enumerate().take(MOST_BODIES) {
+        let table = format!("wall.{index}");
+        list.linear(&format!("{table}.offset"), wall.plane.offset, "m", (-2.0, 2.0));
+        list.material(&table, &wall.material);
+    }
+    for (index, body) in scene.bodies.iter().enumerate().take(MOST_BODIES) {
+        list.body(&format!("body.{index}"), body);
+    }
+    list.0
+}
+
+struct List(Vec<Parameter>);
+
+impl List {
+    /// A number for a slider over powers of ten; the range always holds the value.
+    fn log(&mut self, key: &str, value: f64, unit: &'static str, (min, max): (f64, f64)) {
+        // from nothing no power of ten leads anywhere
+        if value <= 0.0 {
+            return self.linear(key, value, unit, (0.0, max));
+        }
+        self.put(key, value, unit, true, (min.min(value), max.max(value)));
+    }
+
+    fn linear(&mut self, key: &str, value: f64, unit: &'static str, (min, max): (f64, f64)) {
+        self.put(key, value, unit, false, (min.min(value), max.max(value)));
+    }
+
+    fn put(
+        &mut self,
+        key: &str,
+        value: f64,
+        unit: &'static str,
+        log: bool,
+        (min, max): (f64, f64),
+    ) {
+        let applies = if applies_at_once(key) { "at once" } else { "at reset" };
+        let (key, unit, applies) = (key.to_owned(), unit.to_owned(), applies.to_owned());
+        self.0.push(Parameter { key, value, unit, applies, log, min, max });
+    }
+
+    /// The three components of a vector, as `key.0`, `key.1`, `key.2`.
+    fn vector(&mut self, key: &str, value: DVec3, unit: &'static str, most: f64) {
+        for (axis, component) in value.to_array().into_iter().enumerate() {
+            self.linear(&format!("{key}.{axis}"), component, unit, (-most, most));
+        }
+    }
+
+    /// What a table says about its contacts.
+    fn material(&mut self, table: &str, material: &MaterialOverride) {
+        if let Some(k) = material.collision_stiffness {
+            self.log(&format!("{table}.collision_stiffness"), k, "N/m", (1e2, 1e7));
+        }
+        match material.damping {
+            Some(Damping::Restitution(e)) => {
+                self.linear(&format!("{table}.restitution"), e, "", (0.01, 1.0));
+            }
+            Some(Damping::Dashpot(c)) => {
+                self.linear(&format!("{table}.collision_damping"), c, "N·s/m", (0.0, 100.0));
+            }
+            None => {}
+        }
+        if let Some(mu) = material.friction_stiffness {
+            self.linear(&format!("{table}.friction_stiffness"), mu, "", (0.0, 2.0));
+        }
+        if let Some(k) = material.friction_spring {
+            self.log(&format!("{table}.friction_spring"), k, "N/m", (1e2, 1e7));
+        }
+        if let Some(c) = material.friction_damping {
+            self.linear(&format!("{table}.friction_damping"), c, "N·s/m", (0.0, 100.0));
+        }
+    }
+
+    fn body(&mut self, table: &str, body: &BodyScene) {
+        let key = |name: &str| format!("{table}.{name}");
+        self.vector(&key("initial_velocity"), body.initial_velocity, "m/s", 20.0);
+        let spin = body.initial_angular_velocity;
+        self.vector(&key("initial_angular_velocity"), spin, "rad/s", 200.0);
+        if let Some(position) = body.position {
+            self.vector(&key("position"), position, "m", 2.0);
+        }
+        self.log(&key("scale"), body.scale, "", (0.05, 5.0));
+        match body.mass {
+            MassScene::Particle(mass) => {
+                self.log(&key("particle_mass"), mass, "kg", (1e-3, 1e2));
+            }
+            MassScene::Total(mass) => self.log(&key("mass"), mass, "kg", (1e-3, 1e3)),
+            MassScene::Density(density) => {
+                self.log(&key("density"), density, "kg/m³", (1.0, 1e5));
+            }
+        }
+        self.material(table, &body.material);
+    }
+}

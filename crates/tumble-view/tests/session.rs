@@ -1,0 +1,349 @@
+//! The simulation behind the viewer: no sockets, no clock.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::time::Duration;
+
+use tumble_io::scene::{LoadOptions, Loaded, Source, load_builtin, load_text};
+use tumble_view::{Command, Session, frame, head};
+
+const SCENE: &str = "
+dt = 1e-3
+[collision]
+collision_stiffness = 1e4
+restitution = 0.6
+friction_stiffness = 0.4
+[box]
+min = [-1.0, -1.0, -1.0]
+max = [1.0, 1.0, 1.0]
+[[body]]
+name = \"one\"
+shape = \"sphere\"
+subdivisions = 1
+position = [0.0, -0.8, 0.0]
+initial_velocity = [1.0, 0.0, 0.5]
+initial_angular_velocity = [1.0, 2.0, 3.0]
+[[body]]
+name = \"two\"
+shape = \"box\"
+position = [0.3, 0.2, 0.0]
+copies = { count = [2, 1, 1], spacing = [0.6, 0, 0], seed = 3 }
+";
+
+fn loaded(text: &str) -> Loaded {
+    let source = Source { name: "test".to_owned(), text: text.to_owned() };
+    load_text("test", source, Path::new("."), &LoadOptions::default()).unwrap()
+}
+
+fn session() -> Session {
+    Session::new(loaded(SCENE)).unwrap()
+}
+
+fn say(session: &mut Session, text: &str) -> Result<Option<String>, String> {
+    session.carry_out(&Command::parse(text)?)
+}
+
+fn set(session: &mut Session, key: &str, value: &str) -> Result<(), String> {
+    say(session, &format!("{{\"type\":\"set\",\"key\":\"{key}\",\"value\":{value}}}")).map(|_| ())
+}
+
+/// Plays for so many steps, however long they take.
+fn play(session: &mut Session, steps: u64) {
+    say(session, "{\"type\":\"pause\"}").unwrap();
+    for _ in 0..steps {
+        say(session, "{\"type\":\"step\"}").unwrap();
+    }
+    if session.error().is_none() {
+        say(session, "{\"type\":\"play\"}").unwrap();
+    }
+}
+
+fn float(record: &[u8], at: usize) -> f64 {
+    f64::from_le_bytes(record[at..at + 8].try_into().unwrap())
+}
+
+/// How far the ledger is off (J).
+fn residual(session: &Session) -> f64 {
+    session.world().energy().total() - session.baseline()
+}
+
+#[test]
+fn time_goes_as_fast_as_it_is_told() {
+    let mut session = session();
+    let go = &mut || true;
+    assert_eq!(session.advance(go), 0);
+    session.owe(Duration::from_micros(20_500));
+    assert_eq!(session.advance(go), 20);
+    // what is left of a step is not lost
+    session.owe(Duration::from_micros(600));
+    assert_eq!(session.advance(go), 1);
+    say(&mut session, "{\"type\":\"speed\",\"value\":0.1}").unwrap();
+    session.owe(Duration::from_millis(55));
+    assert_eq!(session.advance(go), 5);
+    assert!((session.due_in().unwrap().as_secs_f64() - 0.005).abs() < 1e-9);
+    say(&mut session, "{\"type\":\"speed\",\"value\":null}").unwrap();
+    assert_eq!(session.due_in(), Some(Duration::ZERO));
+    let mut looks = 0;
+    let taken = session.advance(&mut || {
+        looks += 1;
+        looks < 3
+    });
+    assert!(taken >= 3, "{taken}");
+    say(&mut session, "{\"type\":\"pause\"}").unwrap();
+    session.owe(Duration::from_secs(1));
+    assert_eq!((session.advance(go), session.due_in()), (0, None));
+}
+
+#[test]
+fn time_that_is_not_made_is_dropped() {
+    let mut session = session();
+    session.owe(Duration::from_secs(3600));
+    let steps = session.advance(&mut || true);
+    assert!((99..=100).contains(&steps), "{steps}");
+}
+
+#[test]
+fn a_live_motion_is_that_of_a_run() {
+    let mut session = session();
+    play(&mut session, 500);
+    let mut world = loaded(SCENE).world;
+    (0..500).for_each(|_| world.step().unwrap());
+    assert_eq!(session.world().state().hash(), world.state().hash());
+}
+
+#[test]
+fn a_step_is_for_pauses() {
+    let mut session = session();
+    assert!(say(&mut session, "{\"type\":\"step\"}").unwrap_err().contains("paused"));
+    say(&mut session, "{\"type\":\"pause\"}").unwrap();
+    say(&mut session, "{\"type\":\"step\"}").unwrap();
+    assert_eq!(session.world().state().step, 1);
+}
+
+#[test]
+fn what_is_set_at_once_changes_the_motion_and_not_the_residual() {
+    let mut session = session();
+    play(&mut session, 300);
+    for (key, value) in [
+        ("collision.collision_stiffness", "20000"),
+        ("collision.restitution", "0.3"),
+        ("collision.friction_stiffness", "0.1"),
+        ("collision.collision_damping", "5"),
+        ("collision.restitution", "0.9"),
+        ("velocity_damping_stiffness", "0.01"),
+        ("gravity.1", "-1.62"),
+        ("gravity", "[0, -3.7, 0]"),
+        ("energy_tolerance", "1e-6"),
+        ("energy_tolerance", "null"),
+        ("integrator", "\"euler\""),
+        ("integrator", "\"splitting\""),
+        ("box.max", "[1.0, 1.5, 1.0]"),
+        ("box.open", "[\"+y\"]"),
+        ("body.collision_stiffness", "3e4"),
+        ("body.1.friction_stiffness", "0.9"),
+    ] {
+        let before = (residual(&session), session.revision(), session.world().state().clone());
+        set(&mut session, key, value).unwrap_or_else(|why| panic!("{key} = {value}: {why}"));
+        let after = (residual(&session), session.world().state());
+        assert!((after.0 - before.0).abs() < 1e-9, "{key}: {} {}", before.0, after.0);
+        assert_eq!((after.1.step, after.1.time), (before.2.step, before.2.time), "{key}");
+        assert_eq!(after.1.bodies.len(), before.2.bodies.len());
+        assert!(session.revision() > before.1, "{key}");
+        assert!(session.pending().is_empty(), "{key}");
+        play(&mut session, 20);
+    }
+    let model = session.world().model();
+    assert_eq!(model.gravity.y, -3.7);
+    assert_eq!(model.walls.len(), 5);
+    assert_eq!(model.bodies[2].contacts[0].friction, 0.9);
+    assert_eq!(session.error(), None);
+}
+
+#[test]
+fn another_step_keeps_the_time() {
+    let mut session = session();
+    play(&mut session, 100);
+    set(&mut session, "dt", "3e-4").unwrap();
+    let state = session.world().state();
+    assert_eq!((state.step, state.time), (334, 334.0 * 3e-4));
+    play(&mut session, 1);
+    assert_eq!(session.error(), None);
+    // beyond what a double can count
+    assert!(set(&mut session, "dt", "1e-300").is_err());
+    assert_eq!(session.world().dt(), 3e-4);
+}
+
+#[test]
+fn what_is_impossible_is_refused_in_the_readers_words_and_changes_nothing() {
+    let mut session = session();
+    play(&mut session, 50);
+    let before = (session.scene().to_toml(), session.world().state().clone(), session.revision());
+    for (key, value, why) in [
+        ("collision.collision_stiffness", "-1", "collision_stiffness"),
+        ("dt", "0.5", "stable only up to"),
+        ("dt", "0", "`dt`"),
+        ("dt", "\"x\"", "must be"),
+        ("integrator", "\"splittin\"", "splitting"),
+        ("gravty", "1", "not a known key"),
+        ("gravity.7", "1", "counted from 0"),
+        ("collision.restitution", "1.5", "restitution"),
+        ("body.9.scale", "1", "counted from 0"),
+        ("body.0.scale", "0", "scale"),
+        ("body.0.position", "[0, -7, 0]", "outside"),
+        ("body", "[]", "no body"),
+        ("box.min", "[-1, 0, -1]", "`box.min`|outside|behind"),
+        ("energy_tolerance", "null", "not set"),
+        ("wall", "3", "must be"),
+        ("body.1.copies.count", "[100, 100, 100]", "at most"),
+        ("body.1.copies.count", "[2, 100, 110]", "shows at most"),
+    ] {
+        let refused = set(&mut session, key, value).unwrap_err();
+        assert!(why.split('|').any(|why| refused.contains(why)), "{key} = {value}: {refused}");
+        assert!(!refused.contains("-->"), "{refused}");
+    }
+    let after = (session.scene().to_toml(), session.world().state().clone(), session.revision());
+    assert_eq!(before, after);
+    assert_eq!(session.next_scene().to_toml(), before.0);
+}
+
+#[test]
+fn how_bodies_look_and_start_waits_for_a_reset() {
+    let mut session = session();
+    play(&mut session, 50);
+    set(&mut session, "body.0.scale", "0.5").unwrap();
+    set(&mut session, "body.0.initial_velocity.0", "2.5").unwrap();
+    set(&mut session, "body.1.copies.count", "[3, 1, 1]").unwrap();
+    set(&mut session, "body.0.mass", "7").unwrap();
+    assert_eq!(session.pending().len(), 4);
+    assert_eq!(session.world().body_count(), 3);
+    // and is kept by what does not wait
+    set(&mut session, "gravity.1", "-2").unwrap();
+    assert_eq!(session.world().model().gravity.y, -2.0);
+    assert_eq!(session.world().body_count(), 3);
+    say(&mut session, "{\"type\":\"reset\"}").unwrap();
+    assert!(session.pending().is_empty());
+    let world = session.world();
+    assert_eq!((world.time(), world.body_count(), world.model().gravity.y), (0.0, 4, -2.0));
+    assert_eq!((world.body(0).velocity().x, world.body(0).model().mass), (2.5, 7.0));
+    assert_eq!(residual(&session), 0.0);
+}
+
+#[test]
+fn a_failed_simulation_says_so_and_a_reset_mends_it() {
+    let text =
+        SCENE.replace("initial_velocity = [1.0, 0.0, 0.5]", "initial_velocity = [0, -3e4, 0]");
+    let mut session = Session::new(loaded(&text)).unwrap();
+    session.owe(Duration::from_secs(1));
+    session.advance(&mut || true);
+    assert!(session.error().unwrap().contains("diverged"), "{:?}", session.error());
+    assert!(!session.is_playing());
+    assert!(say(&mut session, "{\"type\":\"play\"}").unwrap_err().contains("reset first"));
+    assert!(say(&mut session, "{\"type\":\"step\"}").unwrap_err().contains("reset first"));
+    set(&mut session, "body.0.initial_velocity", "[0, 0, 0]").unwrap();
+    set(&mut session, "dt", "5e-4").unwrap();
+    assert_eq!(session.pending().len(), 2);
+    say(&mut session, "{\"type\":\"reset\"}").unwrap();
+    assert_eq!((session.error(), session.world().dt()), (None, 5e-4));
+    play(&mut session, 100);
+    assert_eq!(session.error(), None);
+}
+
+#[test]
+fn what_is_saved_goes_on_as_the_live_motion_does() {
+    let without_friction = SCENE.replace("friction_stiffness = 0.4", "");
+    let mut session = Session::new(loaded(&without_friction)).unwrap();
+    play(&mut session, 150);
+    set(&mut session, "gravity.1", "-5").unwrap();
+    set(&mut session, "body.0.mass", "9").unwrap();
+    play(&mut session, 150);
+    let toml = say(&mut session, "{\"type\":\"save\"}").unwrap().unwrap();
+    assert!(toml.starts_with("# The scene \"test\" as it was at t = 0.3"), "{toml}");
+    let mut world = loaded(&toml).world;
+    assert_eq!(world.body_count(), 3);
+    for _ in 0..200 {
+        world.step().unwrap();
+    }
+    play(&mut session, 200);
+    for (saved, live) in world.bodies().zip(session.world().bodies()) {
+        assert_eq!(saved.name(), live.name());
+        assert!((saved.position() - live.position()).length() < 1e-9, "{}", saved.name());
+        assert!((saved.velocity() - live.velocity()).length() < 1e-8, "{}", saved.name());
+        assert!(saved.orientation().dot(live.orientation()).abs() > 1.0 - 1e-12);
+    }
+}
+
+#[test]
+fn every_built_in_scene_can_be_viewed_changed_and_saved() {
+    for scene in tumble_io::scene::BUILTIN {
+        let loaded = load_builtin(scene.name, &LoadOptions::default()).unwrap().unwrap();
+        let mut session = Session::new(loaded).unwrap();
+        play(&mut session, 20);
+        let head: serde_json::Value = serde_json::from_str(&head::json(&session)).unwrap();
+        for parameter in head["parameters"].as_array().unwrap() {
+            let (key, value) = (parameter["key"].as_str().unwrap(), parameter["value"].to_string());
+            set(&mut session, key, &value).unwrap_or_else(|why| panic!("{}: {why}", scene.name));
+            let (low, high) =
+                (parameter["min"].as_f64().unwrap(), parameter["max"].as_f64().unwrap());
+            let value = parameter["value"].as_f64().unwrap();
+            assert!(low <= value && value <= high && low < high, "{parameter}");
+        }
+        play(&mut session, 5);
+        say(&mut session, "{\"type\":\"save\"}").unwrap().unwrap();
+        assert_eq!(session.error(), None, "{}", scene.name);
+    }
+}
+
+#[test]
+fn head_and_frame_are_as_described() {
+    let mut session = session();
+    play(&mut session, 400);
+    let head: serde_json::Value = serde_json::from_str(&head::json(&session)).unwrap();
+    assert_eq!(
+        (&head["type"], &head["live"], &head["name"]),
+        (&"head".into(), &true.into(), &"test".into())
+    );
+    // the copies share a shape
+    assert_eq!(head["shapes"].as_array().unwrap().len(), 2);
+    assert_eq!(head["bodies"][2]["shape"], 1);
+    assert_eq!(head["shapes"][0]["particle_count"], 42);
+    assert!(head["shapes"][0]["particles"].is_null());
+    assert_eq!(head["walls"].as_array().unwrap().len(), 6);
+    assert_eq!(head["walls"][0]["friction"], 0.4);
+    assert_eq!(head["box"]["max"][1], 1.0);
+    let vertices = head["shapes"][0]["vertices"].as_str().unwrap();
+    assert_eq!(vertices.len(), (42 * 12usize).div_ceil(3) * 4);
+
+    let record = frame::record(&session);
+    assert_eq!(record.len(), 80 + 88 * 3);
+    let (energy, residual) = (session.world().energy(), residual(&session));
+    assert_eq!((float(&record, 0), float(&record, 8)), (session.world().time(), 400.0));
+    assert_eq!((float(&record, 16), float(&record, 64)), (energy.kinetic, energy.total()));
+    assert_eq!(float(&record, 72), residual);
+    let body = |number: usize, at: usize| {
+        let start = 80 + 88 * number + 4 * at;
+        f64::from(f32::from_le_bytes(record[start..start + 4].try_into().unwrap()))
+    };
+    for (number, view) in session.world().bodies().enumerate() {
+        assert!((body(number, 1) - view.position().y).abs() < 1e-6);
+        assert!((body(number, 3) - view.orientation().w).abs() < 1e-6);
+        assert!((body(number, 6) - view.orientation().z).abs() < 1e-6);
+        assert!((body(number, 9) - view.velocity().z).abs() < 1e-5);
+        let force = session.world().contact_wrench(number).force;
+        assert!((body(number, 17) - force.y).abs() <= 1e-6 * force.length());
+    }
+    // the first body lies on the floor by now
+    assert!(body(0, 17) > 0.0);
+}
+
+#[test]
+fn nobody_is_grabbed_yet() {
+    let mut session = session();
+    for text in [
+        "{\"type\":\"grab\",\"body\":0,\"particle\":17,\"target\":[0,0,0]}",
+        "{\"type\":\"move\",\"target\":[0,0,0]}",
+        "{\"type\":\"release\"}",
+    ] {
+        assert!(say(&mut session, text).unwrap_err().contains("yet"));
+    }
+}
