@@ -4,5 +4,6 @@ pub mod checkpoint;
 pub mod mesh;
 pub mod picture;
 pub mod plot;
+pub mod replay;
 pub mod run;
 pub mod scene;

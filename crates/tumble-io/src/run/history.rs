@@ -1,22 +1,15 @@
 //! The rows that a run has already written, read back so that it can go on after them.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
-use std::path::PathBuf;
-
 use tumble::{DQuat, DVec3, World};
 
 use super::folder::{LEDGER, RunFolder, TRAJECTORY};
 use super::ledger::LEDGER_HEADER;
 use super::recorder::Recorder;
 use super::resume::ResumeError;
+use super::rows::{Rows, parse_ledger, parse_trajectory};
 use super::trajectory::TRAJECTORY_HEADER;
 use crate::picture::{Frame, Pose};
-use crate::plot::EnergyRow;
 use crate::scene::Scene;
-
-/// A longer row is none.
-const LONGEST: u64 = 1 << 13;
 
 /// The rows of a run up to a moment.
 #[derive(Debug)]
@@ -41,11 +34,11 @@ impl History {
         if !is_there(TRAJECTORY) && !is_there(LEDGER) {
             return Ok(None);
         }
-        let mut trajectory = Rows::open(folder, TRAJECTORY, TRAJECTORY_HEADER)?;
-        let mut ledger = Rows::open(folder, LEDGER, LEDGER_HEADER)?;
+        let mut trajectory = Rows::open(folder.file(TRAJECTORY), TRAJECTORY_HEADER)?;
+        let mut ledger = Rows::open(folder.file(LEDGER), LEDGER_HEADER)?;
         let mut recorder = Recorder::new(world.body_count());
         let last = world.state().step;
-        let mut row = ledger.next()?.map(|row| ledger_row(&row)).transpose();
+        let mut row = ledger.next()?.map(|row| parse_ledger(&row).ok_or(())).transpose();
         // a run that lost its first rows begins with a later frame
         let first = match row {
             Ok(Some(row)) => (row.time / scene.dt).round() as u64,
@@ -54,23 +47,26 @@ impl History {
         let is_frame =
             if first > last { first == scene.next_frame(last) } else { scene.is_frame(first) };
         if !is_frame {
-            return Err(ledger.wrong("has a first row of a time without a frame"));
+            return Err(ledger.wrong("has a first row of a time without a frame").into());
         }
         let mut step = first;
         while step <= last {
             let time = step as f64 * scene.dt;
             let next = match row {
                 Ok(Some(row)) if row.time == time => row,
-                Ok(None) => return Err(ledger.wrong(&format!("has no row of t = {time} s"))),
+                Ok(None) => {
+                    return Err(ledger.wrong(&format!("has no row of t = {time} s")).into());
+                }
                 _ => {
-                    return Err(ledger.wrong(&format!("has another row than that of t = {time} s")));
+                    let other = format!("has another row than that of t = {time} s");
+                    return Err(ledger.wrong(&other).into());
                 }
             };
             let poses = poses(&mut trajectory, world, time)?;
             recorder.record_frame(Frame { time, poses }, next);
             step = scene.next_frame(step);
             if step <= last {
-                row = ledger.next()?.map(|row| ledger_row(&row)).transpose();
+                row = ledger.next()?.map(|row| parse_ledger(&row).ok_or(())).transpose();
             }
         }
         // of a first frame that is still to come, the row was read but is not kept
@@ -95,73 +91,9 @@ fn poses(rows: &mut Rows, world: &World, time: f64) -> Result<Vec<Pose>, ResumeE
 }
 
 fn pose(row: &str, time: f64, name: &str) -> Option<Pose> {
-    let (of, rest) = row.split_once(',')?;
-    let (body, rest) = rest.split_once(',')?;
-    if of.parse::<f64>().ok()? != time || body != name {
+    let (of, body, [px, py, pz, w, x, y, z, ..]) = parse_trajectory(row)?;
+    if of != time || body != name {
         return None;
     }
-    let [px, py, pz, w, x, y, z, ..] = numbers::<16>(rest)?;
     Some(Pose { position: DVec3::new(px, py, pz), orientation: DQuat::from_xyzw(x, y, z, w) })
-}
-
-fn ledger_row(row: &str) -> Result<EnergyRow, ()> {
-    let [time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual] =
-        numbers::<9>(row).ok_or(())?;
-    let row =
-        EnergyRow { time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual };
-    Ok(row)
-}
-
-/// Exactly `N` numbers.
-fn numbers<const N: usize>(row: &str) -> Option<[f64; N]> {
-    let mut numbers = [0.0; N];
-    let mut fields = row.split(',');
-    for number in &mut numbers {
-        *number = fields.next()?.parse().ok()?;
-    }
-    fields.next().is_none().then_some(numbers)
-}
-
-/// The rows of a CSV file, one by one.
-struct Rows {
-    path: PathBuf,
-    from: BufReader<File>,
-    /// Bytes of the header.
-    header: u64,
-    /// Bytes read so far.
-    at: u64,
-}
-
-impl Rows {
-    fn open(folder: &RunFolder, name: &str, header: &str) -> Result<Self, ResumeError> {
-        let path = folder.file(name);
-        let file = File::open(&path)
-            .map_err(|error| ResumeError::Rows(path.clone(), format!("cannot be read: {error}")))?;
-        let mut rows = Self { path, from: BufReader::new(file), header: 0, at: 0 };
-        if rows.next()?.as_deref() != Some(header) {
-            return Err(rows.wrong("does not begin with its header"));
-        }
-        rows.header = rows.at;
-        Ok(rows)
-    }
-
-    /// The next row that is whole.
-    fn next(&mut self) -> Result<Option<String>, ResumeError> {
-        let mut row = Vec::new();
-        let read = self.from.by_ref().take(LONGEST).read_until(b'\n', &mut row);
-        let read = read.map_err(|error| self.wrong(&format!("cannot be read: {error}")))?;
-        if row.pop() != Some(b'\n') {
-            let torn = (read as u64) < LONGEST;
-            return if torn { Ok(None) } else { Err(self.wrong("has a row without an end")) };
-        }
-        self.at += read as u64;
-        match String::from_utf8(row) {
-            Ok(row) => Ok(Some(row)),
-            Err(_) => Err(self.wrong("has a row that is no text")),
-        }
-    }
-
-    fn wrong(&self, what: &str) -> ResumeError {
-        ResumeError::Rows(self.path.clone(), what.to_owned())
-    }
 }

@@ -7,6 +7,7 @@ mod ledger;
 mod recorder;
 mod recording;
 mod resume;
+mod rows;
 mod runner;
 mod summary;
 mod trajectory;
@@ -15,6 +16,10 @@ pub use folder::{CHECKPOINT, RunError, RunFolder};
 pub use ledger::{LEDGER_HEADER, ledger_row};
 pub use recorder::Recorder;
 pub use resume::{ResumeError, Resumption};
+pub use rows::RowError;
 pub use runner::{Finished, Progress, run};
 pub use summary::Summary;
 pub use trajectory::{TRAJECTORY_HEADER, write_frame};
+
+pub(crate) use folder::{LEDGER, SCENE, TRAJECTORY};
+pub(crate) use rows::{Rows, parse_ledger, parse_trajectory};
