@@ -96,7 +96,7 @@ pub fn failure(error: &RunError) -> Failure {
 
 /// A flag that the first Ctrl-C (or a request to terminate) raises; a second one ends at once.
 /// A hang-up is left alone, so that `nohup` and closed terminals do what they always do.
-fn stop_on_ctrl_c() -> Arc<AtomicBool> {
+pub fn stop_on_ctrl_c() -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let set = [SIGINT, SIGTERM].into_iter().try_for_each(|signal| {
         // in this order: the flag of the first signal is what the second one finds
@@ -104,12 +104,12 @@ fn stop_on_ctrl_c() -> Arc<AtomicBool> {
         flag::register(signal, Arc::clone(&stop)).map(|_| ())
     });
     if set.is_err() {
-        complain("warning: Ctrl-C will stop the run without writing its last results");
+        complain("warning: Ctrl-C will stop at once, with things left undone");
     }
     stop
 }
 
-fn progress_bar() -> ProgressBar {
+pub fn progress_bar() -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }

@@ -1,6 +1,7 @@
 //! Scenes, meshes, recordings, plots and pictures for [`tumble`].
 
 pub mod checkpoint;
+pub mod export;
 pub mod mesh;
 pub mod picture;
 pub mod plot;

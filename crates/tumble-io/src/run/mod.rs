@@ -21,5 +21,7 @@ pub use runner::{Finished, Progress, run};
 pub use summary::Summary;
 pub use trajectory::{TRAJECTORY_HEADER, write_frame};
 
+pub(crate) use drawing::{boundary, in_studio};
 pub(crate) use folder::{LEDGER, SCENE, TRAJECTORY};
 pub(crate) use rows::{Rows, parse_ledger, parse_trajectory};
+pub(crate) use trajectory::write_row;
