@@ -27,7 +27,7 @@ enum Failure {
 #[derive(Parser)]
 #[command(name = "tumble", version, about = "Simulates rigid bodies made of particles")]
 #[command(
-    after_help = "Exit status: 0 done, 1 the simulation failed, 2 wrong call, scene, mesh or checkpoint, \
+    after_help = "Exit status: 0 done, 1 the simulation failed, 2 wrong call, scene, mesh, checkpoint or run, \
                         130 stopped by Ctrl-C"
 )]
 struct Cli {

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use tumble::{BodyModel, DMat3, DVec3, World};
 
-use super::draft::beside;
+use super::draft::{beside, folder_of};
 use super::{ExportError, Exported, Job, Watch, tell};
 use crate::replay::{Pose, ReplayFrame};
 
@@ -51,11 +51,13 @@ struct Folder {
 
 impl Folder {
     fn create(job: &Job) -> Result<Self, ExportError> {
-        let path = job.export.path.with_extension("");
-        let name = path.file_name().and_then(|name| name.to_str()).map(str::to_owned);
-        let name = name.ok_or_else(|| {
+        let stem = job.export.path.file_stem().and_then(|stem| stem.to_str());
+        let stem = stem.ok_or_else(|| {
             ExportError::Unfit("the name of a .pvd file must be text in UTF-8".to_owned())
         })?;
+        // not the bare stem: out/cat.pvd is to stand beside the run out/cat
+        let name = format!("{stem}_frames");
+        let path = folder_of(&job.export.path).join(&name);
         let folder = Self { name, temporary: beside(&path), path };
         if folder.path.symlink_metadata().is_ok() {
             if !job.export.options.force {
