@@ -19,49 +19,28 @@ const POINTS: u32 = 0;
 
 pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
     let (frames, times) = in_single_precision(job);
+    let (scene, count) = (&job.replay.scene, job.replay.world.body_count());
     let mut arrays = Arrays::default();
     let stage = Stage::new(job);
     let mut meshes = Meshes::new(&stage, &mut arrays)?;
-    let bodies = job.replay.world.bodies();
-    let count = bodies.len();
-    let mut nodes = vec![json!({ "name": job.replay.scene.name })];
-    let (mut samplers, mut channels) = (Vec::new(), Vec::new());
-    // a single frame is a pose, not a motion
-    let clock = if times.len() > 1 {
-        Some(arrays.vectors(&times, None, true).ok_or_else(too_far)?)
-    } else {
-        None
-    };
-    for (index, body) in bodies.enumerate() {
+    let mut motion = Motion::new(&mut arrays, &times)?;
+    let mut nodes = vec![json!({ "name": scene.name })];
+    for (index, body) in job.replay.world.bodies().enumerate() {
         tell(watch, index, count)?;
         let places: Vec<[f32; 3]> =
             frames.iter().map(|frame| single(frame.poses[index].position)).collect();
         let turns: Vec<[f32; 4]> = steady(frames.iter().copied(), index).map(turn).collect();
-        let node = nodes.len();
+        motion.add(&mut arrays, nodes.len(), &places, &turns)?;
         nodes.push(json!({
             "name": body.name(), "mesh": meshes.of_body(&stage, index),
             "translation": places[0], "rotation": turns[0],
         }));
-        if let Some(clock) = clock {
-            let outputs = [
-                ("translation", arrays.vectors(&places, None, false)),
-                ("rotation", arrays.vectors(&turns, None, false)),
-            ];
-            for (path, output) in outputs {
-                let output = output.ok_or_else(too_far)?;
-                channels.push(json!({
-                    "sampler": samplers.len(), "target": { "node": node, "path": path },
-                }));
-                samplers
-                    .push(json!({ "input": clock, "output": output, "interpolation": "LINEAR" }));
-            }
-        }
     }
     if !stage.walls.is_empty() {
         nodes.push(json!({ "name": "walls", "mesh": meshes.walls(&stage, &mut arrays)? }));
     }
     nodes[0]["children"] = (1..nodes.len()).collect();
-    let upright = upright(job.replay.scene.gravity, DVec3::Y);
+    let upright = upright(scene.gravity, DVec3::Y);
     if upright != DQuat::IDENTITY {
         nodes[0]["rotation"] = json!(turn(upright));
     }
@@ -72,13 +51,60 @@ pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportErro
         "accessors": arrays.accessors, "bufferViews": arrays.views,
         "buffers": [{ "byteLength": arrays.bytes.len() }],
     });
-    if !channels.is_empty() {
-        root["animations"] = json!([{
-            "name": job.replay.scene.name, "samplers": samplers, "channels": channels,
-        }]);
+    if let Some(animation) = motion.animation(&scene.name) {
+        root["animations"] = json!([animation]);
     }
     let bytes = put_together(job, root.to_string().into_bytes(), arrays.bytes)?;
     Ok(Exported { frames: frames.len(), bytes })
+}
+
+/// How the nodes move.
+struct Motion {
+    /// The accessor of the times; none for a single frame, which is a pose and no motion.
+    clock: Option<usize>,
+    samplers: Vec<Value>,
+    channels: Vec<Value>,
+}
+
+impl Motion {
+    fn new(arrays: &mut Arrays, times: &[[f32; 1]]) -> Result<Self, ExportError> {
+        let clock = if times.len() > 1 {
+            Some(arrays.vectors(times, None, true).ok_or_else(too_far)?)
+        } else {
+            None
+        };
+        Ok(Self { clock, samplers: Vec::new(), channels: Vec::new() })
+    }
+
+    fn add(
+        &mut self,
+        arrays: &mut Arrays,
+        node: usize,
+        places: &[[f32; 3]],
+        turns: &[[f32; 4]],
+    ) -> Result<(), ExportError> {
+        let Some(clock) = self.clock else {
+            let is_finite = places[0].iter().all(|number| number.is_finite());
+            return if is_finite { Ok(()) } else { Err(too_far()) };
+        };
+        let outputs = [
+            ("translation", arrays.vectors(places, None, false)),
+            ("rotation", arrays.vectors(turns, None, false)),
+        ];
+        for (path, output) in outputs {
+            let output = output.ok_or_else(too_far)?;
+            let target = json!({ "node": node, "path": path });
+            self.channels.push(json!({ "sampler": self.samplers.len(), "target": target }));
+            let sampler = json!({ "input": clock, "output": output, "interpolation": "LINEAR" });
+            self.samplers.push(sampler);
+        }
+        Ok(())
+    }
+
+    fn animation(self, name: &str) -> Option<Value> {
+        self.clock?;
+        Some(json!({ "name": name, "samplers": self.samplers, "channels": self.channels }))
+    }
 }
 
 /// The two chunks and their header, each padded to four bytes.

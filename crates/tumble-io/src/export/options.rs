@@ -124,7 +124,9 @@ impl ExportOptions {
         }
         if let Some(View { yaw, pitch, zoom }) = self.view {
             let quarter = std::f64::consts::FRAC_PI_2;
-            if !yaw.is_finite() || !(pitch.abs() <= quarter) || !(0.01..=100.0).contains(&zoom) {
+            let is_view =
+                yaw.is_finite() && pitch.abs() <= quarter && (0.01..=100.0).contains(&zoom);
+            if !is_view {
                 return wrong(
                     "--camera must be yaw,pitch or yaw,pitch,zoom: degrees, pitch from -90 to 90, \
                      zoom from 0.01 to 100"

@@ -29,13 +29,15 @@ pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportErro
     let rate = job.chosen.rate.round().max(1.0);
     header(&mut out, job, up, rate).map_err(failed)?;
     shapes(&mut out, &stage).map_err(failed)?;
-    let mut names = HashSet::from(["Shapes".to_owned(), "Materials".to_owned()]);
     let bodies = job.replay.world.bodies();
+    let colours = materials(&mut out, bodies.len()).map_err(failed)?;
+    let mut names = HashSet::from(["Shapes".to_owned(), "Materials".to_owned()]);
     let count = bodies.len();
     for (index, body) in bodies.enumerate() {
         tell(watch, index, count)?;
         let name = (identifier(body.name(), &mut names), body.name());
-        write_body(&mut out, job, (index, stage.form_of[index]), name, rate).map_err(failed)?;
+        let looks = (stage.form_of[index], colours[index]);
+        write_body(&mut out, job, (index, looks), name, rate).map_err(failed)?;
     }
     if !stage.walls.is_empty() {
         walls(&mut out, &stage.walls, &identifier("walls", &mut names)).map_err(failed)?;
@@ -79,6 +81,34 @@ fn shapes(out: &mut Draft, stage: &Stage) -> io::Result<()> {
         writeln!(out, "        }}\n")?;
     }
     writeln!(out, "    }}\n")
+}
+
+/// A material for each colour of the bodies, for renderers that do not heed `displayColor`; returns
+/// which one each body has.
+fn materials(out: &mut Draft, count: usize) -> io::Result<Vec<usize>> {
+    let mut made: Vec<[f32; 3]> = Vec::new();
+    let of_body = (0..count).map(|body| {
+        let colour = linear_colour(body);
+        made.iter().position(|other| *other == colour).unwrap_or_else(|| {
+            made.push(colour);
+            made.len() - 1
+        })
+    });
+    let of_body = of_body.collect();
+    writeln!(out, "    def Scope \"Materials\"\n    {{")?;
+    for (index, [r, g, b]) in made.iter().enumerate() {
+        let material = format!("Colour_{index}");
+        writeln!(
+            out,
+            "        def Material \"{material}\"\n        {{\n            token outputs:surface.connect = \
+             </World/Materials/{material}/surface.outputs:surface>\n\n            def Shader \"surface\"\n            \
+             {{\n                uniform token info:id = \"UsdPreviewSurface\"\n                \
+             color3f inputs:diffuseColor = ({r}, {g}, {b})\n                float inputs:roughness = 0.5\n                \
+             token outputs:surface\n            }}\n        }}\n",
+        )?;
+    }
+    writeln!(out, "    }}\n")?;
+    Ok(of_body)
 }
 
 fn mesh(out: &mut Draft, form: &Form) -> io::Result<()> {
@@ -139,15 +169,16 @@ fn list(
 fn write_body(
     out: &mut Draft,
     job: &Job,
-    (index, form): (usize, usize),
+    (index, (form, material)): (usize, (usize, usize)),
     (prim, name): (String, &str),
     rate: f64,
 ) -> io::Result<()> {
     let [r, g, b] = linear_colour(index);
     writeln!(
         out,
-        "    def Xform \"{prim}\" (\n        displayName = \"{}\"\n    )\n    {{\n        \
-         color3f[] primvars:displayColor = [({r}, {g}, {b})]\n        \
+        "    def Xform \"{prim}\" (\n        displayName = \"{}\"\n        prepend apiSchemas = \
+         [\"MaterialBindingAPI\"]\n    )\n    {{\n        rel material:binding = \
+         </World/Materials/Colour_{material}>\n        color3f[] primvars:displayColor = [({r}, {g}, {b})]\n        \
          quatf xformOp:orient.timeSamples = {{",
         quoted(name),
     )?;
