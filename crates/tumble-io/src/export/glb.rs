@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use tumble::{DQuat, DVec3};
 
 use super::glb_buffer::{Arrays, VERTICES};
-use super::stage::{Form, Stage, linear_colour, steady, upright};
+use super::stage::{Form, Stage, linear_colour, steady, too_far, upright};
 use super::{ExportError, Exported, Job, Watch, tell};
 use crate::replay::ReplayFrame;
 
@@ -21,7 +21,7 @@ pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportErro
     let (frames, times) = in_single_precision(job);
     let (scene, count) = (&job.replay.scene, job.replay.world.body_count());
     let mut arrays = Arrays::default();
-    let stage = Stage::new(job);
+    let stage = Stage::new(job)?;
     let mut meshes = Meshes::new(&stage, &mut arrays)?;
     let mut motion = Motion::new(&mut arrays, &times)?;
     let mut nodes = vec![json!({ "name": scene.name })];
@@ -151,12 +151,6 @@ fn single(v: DVec3) -> [f32; 3] {
 /// In the order of glTF: x, y, z, w.
 fn turn(q: DQuat) -> [f32; 4] {
     q.as_quat().normalize().to_array()
-}
-
-fn too_far() -> ExportError {
-    ExportError::Unfit(
-        "a place is too far away for the single precision of .glb; .csv can hold it".to_owned(),
-    )
 }
 
 /// The meshes and materials of the file; bodies of one shape share its arrays.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use tumble::{DQuat, DVec3, Shape};
 
-use super::Job;
+use super::{ExportError, Job};
 use crate::picture::{Boundary, colour, corner_normals};
 use crate::replay::{Replay, ReplayFrame};
 use crate::run::boundary;
@@ -31,7 +31,9 @@ pub(super) struct Form {
 }
 
 impl Stage {
-    pub fn new(job: &Job) -> Self {
+    /// # Errors
+    /// [`ExportError::Unfit`] where single precision cannot hold a place.
+    pub fn new(job: &Job) -> Result<Self, ExportError> {
         let mut shapes: Vec<&Arc<Shape>> = Vec::new();
         let form_of = job.replay.world.bodies().map(|body| {
             let own = &body.model().shape;
@@ -41,15 +43,25 @@ impl Stage {
             })
         });
         let form_of = form_of.collect();
-        let forms = shapes.iter().map(|shape| Form::new(shape)).collect();
+        let forms: Vec<Form> = shapes.iter().map(|shape| Form::new(shape)).collect();
         let bounds = Bounds::of(job.replay, job.chosen.span);
         let walls = boundary(&job.replay.scene);
-        Self {
-            forms,
-            form_of,
-            walls: walls.iter().flat_map(|part| pieces(part, &bounds)).collect(),
+        let walls: Vec<[DVec3; 4]> = walls.iter().flat_map(|part| pieces(part, &bounds)).collect();
+        let points = forms.iter().flat_map(|form| &form.points).chain(walls.iter().flatten());
+        let is_held = |point: &DVec3| point.as_vec3().is_finite();
+        if !points.chain([&(bounds.centre + bounds.radius)]).all(is_held) {
+            return Err(too_far());
         }
+        Ok(Self { forms, form_of, walls })
     }
+}
+
+/// What single precision cannot hold.
+pub(super) fn too_far() -> ExportError {
+    ExportError::Unfit(
+        "a place is too far away for the single precision of .glb and .usda; .csv can hold it"
+            .to_owned(),
+    )
 }
 
 impl Form {
@@ -113,7 +125,10 @@ impl Bounds {
             high = high.max(pose.position);
         }
         let largest = replay.world.bodies().map(|body| body.model().reach()).fold(0.0, f64::max);
-        Self { centre: 0.5 * (low + high), radius: 0.5 * (high - low).length() + 1.5 * largest }
+        let radius = 0.5 * (high - low).length() + 1.5 * largest;
+        // a lone particle at rest still lies on something
+        let radius = if radius > 0.0 { radius } else { 1.0 };
+        Self { centre: 0.5 * (low + high), radius }
     }
 }
 

@@ -194,10 +194,12 @@ fn a_glb_of_one_frame_is_a_pose_and_stands_upright() {
 #[test]
 fn what_single_precision_cannot_hold_is_refused() {
     let mut far = replay(SCENE, 2);
-    far.frames[1].poses[0].position = DVec3::X * 1e39;
     let desk = Desk::new();
-    let error = desk.export(&far, "a.glb", ExportOptions::default()).unwrap_err();
-    assert!(matches!(error, ExportError::Unfit(_)), "{error}");
+    for (file, place) in [("a.glb", 1e39), ("a.usda", 1e39), ("a.glb", 1e300), ("a.usda", 1e300)] {
+        far.frames[1].poses[0].position = DVec3::X * place;
+        let error = desk.export(&far, file, ExportOptions::default()).unwrap_err();
+        assert!(matches!(error, ExportError::Unfit(_)), "{error}");
+    }
     assert!(desk.names().is_empty());
     // times that are the same in single precision
     let mut dense = replay(SCENE, 3);

@@ -15,7 +15,7 @@ use super::stage::{Form, Stage, linear_colour, steady, upright};
 use super::{ExportError, Exported, Job, Watch, tell};
 
 pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
-    let stage = Stage::new(job);
+    let stage = Stage::new(job)?;
     let mut out = job.draft()?;
     let failed = |error| job.failed(error);
     let scene = &job.replay.scene;
