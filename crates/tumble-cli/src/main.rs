@@ -1,5 +1,6 @@
 //! The `tumble` command: rigid bodies made of particles, from a scene to its results.
 
+mod export;
 mod info;
 mod resume;
 mod run;
@@ -27,7 +28,7 @@ enum Failure {
 #[derive(Parser)]
 #[command(name = "tumble", version, about = "Simulates rigid bodies made of particles")]
 #[command(
-    after_help = "Exit status: 0 done, 1 the simulation failed, 2 wrong call, scene, mesh or checkpoint, \
+    after_help = "Exit status: 0 done, 1 the simulation failed, 2 wrong call, scene, mesh, checkpoint or run, \
                         130 stopped by Ctrl-C"
 )]
 struct Cli {
@@ -41,6 +42,8 @@ enum Command {
     Run(run::RunArgs),
     /// Go on with a run from its checkpoint, to the same bits as if it had never stopped
     Resume(resume::ResumeArgs),
+    /// Write a run in another format: .glb .usda .pvd .csv .png .gif .mp4
+    Export(export::ExportArgs),
     /// List the built-in scenes, or print one to start from
     Scenes(scenes::ScenesArgs),
     /// Show what a mesh is: particles, mass, centre, principal moments, watertight or not
@@ -57,6 +60,7 @@ fn main() -> ExitCode {
     let result = match cli.command {
         Command::Run(args) => run::run(&args),
         Command::Resume(args) => resume::resume(&args),
+        Command::Export(args) => export::export(&args),
         Command::Scenes(args) => scenes::scenes(&args),
         Command::Info(args) => info::info(&args),
         Command::Verify(args) => verify::verify(&args),

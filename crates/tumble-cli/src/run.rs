@@ -108,12 +108,12 @@ pub fn stop_on_ctrl_c() -> Arc<AtomicBool> {
         flag::register(signal, Arc::clone(&stop)).map(|_| ())
     });
     if set.is_err() {
-        complain("warning: Ctrl-C will stop the run without writing its last results");
+        complain("warning: Ctrl-C will stop at once, with things left undone");
     }
     stop
 }
 
-fn progress_bar() -> ProgressBar {
+pub fn progress_bar() -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }

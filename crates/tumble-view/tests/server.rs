@@ -229,8 +229,8 @@ fn commands_are_carried_out() {
     page.set("collision.collision_stiffness", "-5");
     let why = page.text("refused")["why"].to_string();
     assert!(why.contains("`collision.collision_stiffness`"), "{why}");
-    page.say("{\"type\":\"grab\",\"body\":0,\"particle\":0,\"target\":[0,0,0]}");
-    assert!(page.text("refused")["why"].to_string().contains("yet"));
+    page.say("{\"type\":\"grab\",\"body\":0,\"particle\":99999999,\"target\":[0,0,0]}");
+    assert!(page.text("refused")["why"].to_string().contains("no particle"));
     page.say("{\"type\":\"nonsense\"}");
     assert!(page.text("refused")["why"].to_string().contains("unknown variant"));
     page.0.send(Message::binary(vec![1, 2, 3])).unwrap();

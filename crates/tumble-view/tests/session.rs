@@ -5,6 +5,7 @@
 use std::path::Path;
 use std::time::Duration;
 
+use tumble::DVec3;
 use tumble_io::scene::{LoadOptions, Loaded, Source, load_builtin, load_text};
 use tumble_view::{Command, Session, frame, head};
 
@@ -337,13 +338,40 @@ fn head_and_frame_are_as_described() {
 }
 
 #[test]
-fn nobody_is_grabbed_yet() {
+fn a_hand_pulls_a_body_and_its_work_is_accounted_for() {
     let mut session = session();
-    for text in [
-        "{\"type\":\"grab\",\"body\":0,\"particle\":17,\"target\":[0,0,0]}",
-        "{\"type\":\"move\",\"target\":[0,0,0]}",
-        "{\"type\":\"release\"}",
-    ] {
-        assert!(say(&mut session, text).unwrap_err().contains("yet"));
+    say(&mut session, "{\"type\":\"pause\"}").unwrap();
+    let grab = "{\"type\":\"grab\",\"body\":0,\"particle\":0,\"target\":[-0.5,0.5,0]}";
+    say(&mut session, grab).unwrap();
+    let before = session.baseline();
+    for _ in 0..500 {
+        say(&mut session, "{\"type\":\"step\"}").unwrap();
+    }
+    say(&mut session, "{\"type\":\"move\",\"target\":[-0.5,0.6,0.5]}").unwrap();
+    for _ in 0..500 {
+        say(&mut session, "{\"type\":\"step\"}").unwrap();
+    }
+    let place = session.world().body(0).particle(0).0;
+    assert!((place - DVec3::new(-0.5, 0.6, 0.5)).length() < 0.1, "{place}");
+    assert!(session.baseline() > before, "the work of the hand");
+    let residual = session.world().energy().total() - session.baseline();
+    let in_play = session.world().energy().kinetic + session.world().pulled();
+    assert!(residual.abs() < 0.02 * in_play, "{residual} {in_play}");
+    // what is set holds on, what is reset lets go
+    say(&mut session, "{\"type\":\"set\",\"key\":\"gravity.1\",\"value\":-1.62}").unwrap();
+    say(&mut session, "{\"type\":\"move\",\"target\":[0,2,0]}").unwrap();
+    say(&mut session, "{\"type\":\"reset\"}").unwrap();
+    assert!(say(&mut session, "{\"type\":\"move\",\"target\":[0,2,0]}").is_err());
+    say(&mut session, "{\"type\":\"release\"}").unwrap();
+}
+
+#[test]
+fn what_is_not_there_cannot_be_grabbed() {
+    let mut session = session();
+    for (body, particle) in [(0, 999_999), (999, 0)] {
+        let grab = format!(
+            "{{\"type\":\"grab\",\"body\":{body},\"particle\":{particle},\"target\":[0,0,0]}}"
+        );
+        assert!(say(&mut session, &grab).unwrap_err().contains("there is no particle"));
     }
 }

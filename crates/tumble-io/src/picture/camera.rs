@@ -1,12 +1,10 @@
 //! Where the viewer stands, and how points of the world become pixels.
 
-use super::drawable;
+use super::{View, drawable};
 use glam::{DQuat, DVec3};
 
 /// Half of the vertical angle of view, as a tangent: a long lens, so that sizes can be compared.
 const HALF_VIEW: f64 = 0.27;
-/// How far the viewer looks down (rad).
-const ELEVATION: f64 = 0.38;
 /// Nothing nearer than this is drawn, in units of the scene's size.
 const NEAR: f64 = 1e-3;
 
@@ -69,10 +67,11 @@ fn bounds(points: &[DVec3]) -> (DVec3, f64) {
 }
 
 impl Camera {
-    /// Looks at `points` from an angle to the side (rad), as near as they all fit the viewport.
-    pub fn framing(points: &[DVec3], up: DVec3, azimuth: f64, view: Viewport) -> Self {
+    /// Looks at `points` in a direction, as near as they all fit the viewport; then zooms in.
+    pub fn framing(points: &[DVec3], up: DVec3, direction: View, view: Viewport) -> Self {
         let (east, up, south) = level_frame(up);
-        let turn = DQuat::from_axis_angle(up, azimuth) * DQuat::from_axis_angle(east, -ELEVATION);
+        let turn = DQuat::from_axis_angle(up, direction.yaw)
+            * DQuat::from_axis_angle(east, -direction.pitch);
         let (right, back) = (turn * east, turn * south);
         let (centre, scale) = bounds(points);
         let focal = 0.5 * view.height / HALF_VIEW;
@@ -87,6 +86,7 @@ impl Camera {
             principal: (view.left + 0.5 * view.width, view.top + 0.5 * view.height),
         };
         camera.stand_back(points, 0.5 * view.width / focal, HALF_VIEW);
+        camera.focal *= direction.zoom;
         camera
     }
 

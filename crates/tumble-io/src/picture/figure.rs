@@ -206,7 +206,11 @@ fn merge(vertices: &[DVec3], cell: f64) -> (Vec<DVec3>, Vec<u32>) {
 }
 
 /// The normal at each corner of each triangle: smooth across flat edges, sharp across creases.
-fn corner_normals(points: &[DVec3], triangles: &[[u32; 3]], radius: f64) -> Vec<[Vec3; 3]> {
+pub(crate) fn corner_normals(
+    points: &[DVec3],
+    triangles: &[[u32; 3]],
+    radius: f64,
+) -> Vec<[Vec3; 3]> {
     let scale = if radius > 0.0 { 1.0 / radius } else { 1.0 };
     // area-weighted normal of each face
     let face = |t: &[u32; 3]| {

@@ -54,6 +54,8 @@ mod tests;
 mod text;
 
 pub use compose::Studio;
+pub(crate) use compose::colour;
+pub(crate) use figure::corner_normals;
 use glam::{DQuat, DVec3};
 pub use image::{Image, PictureError, encode_png};
 
@@ -75,6 +77,18 @@ pub struct MotionPicture<'a> {
     pub frames: &'a [Frame],
     /// Width and height in pixels; a side is held between 1 and 16384.
     pub size: (u32, u32),
+}
+
+/// Where a picture is seen from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Turns the viewer around the direction that points up (rad). At 0 the view goes along −z
+    /// where +y is up, and along +y where +z is up.
+    pub yaw: f64,
+    /// How far the viewer looks down (rad).
+    pub pitch: f64,
+    /// 1 shows the walls and the whole motion, 2 enlarges the middle to twice that.
+    pub zoom: f64,
 }
 
 /// What a body looks like.

@@ -1,8 +1,8 @@
-//! `motion.png`: from a scene and its frames to the picture.
+//! From a scene and its frames to what draws them.
 
 use tumble::{DVec3, World};
 
-use crate::picture::{self, Boundary, MotionPicture, PictureBody, encode_png, render};
+use crate::picture::{self, Boundary, MotionPicture, PictureBody, Studio, View, encode_png};
 use crate::scene::Scene;
 
 /// The motion in one picture, as PNG.
@@ -11,6 +11,32 @@ pub(super) fn motion_picture(
     world: &World,
     frames: &[picture::Frame],
 ) -> Result<Vec<u8>, picture::PictureError> {
+    let view = (picture::DEFAULT_SIZE, None);
+    in_studio((scene, world), frames, view, |studio| encode_png(&studio.motion()))
+}
+
+/// The walls of a scene.
+pub(crate) fn boundary(scene: &Scene) -> Vec<Boundary> {
+    let of_box = scene.walls_of_box.iter().map(|own| Boundary::Box {
+        min: own.walls.min,
+        max: own.walls.max,
+        orientation: own.walls.orientation,
+        open: own.walls.open,
+    });
+    let single = scene
+        .walls
+        .iter()
+        .map(|wall| Boundary::Plane { normal: wall.plane.normal, offset: wall.plane.offset });
+    of_box.chain(single).collect()
+}
+
+/// Draws with a studio for pictures of this size (pixels) and view.
+pub(crate) fn in_studio<T>(
+    (scene, world): (&Scene, &World),
+    frames: &[picture::Frame],
+    (size, view): ((u32, u32), Option<View>),
+    draw: impl FnOnce(&Studio) -> T,
+) -> T {
     // bodies without a surface are drawn by their particles
     let points: Vec<Vec<DVec3>> = world
         .bodies()
@@ -29,22 +55,13 @@ pub(super) fn motion_picture(
             PictureBody { name: body.name(), vertices, triangles: &surface.triangles }
         })
         .collect();
-    let of_box = scene.walls_of_box.iter().map(|own| Boundary::Box {
-        min: own.walls.min,
-        max: own.walls.max,
-        orientation: own.walls.orientation,
-        open: own.walls.open,
-    });
-    let single = scene
-        .walls
-        .iter()
-        .map(|wall| Boundary::Plane { normal: wall.plane.normal, offset: wall.plane.offset });
-    encode_png(&render(&MotionPicture {
+    let picture = MotionPicture {
         title: &scene.name,
         up: -scene.gravity,
         bodies: &bodies,
-        boundary: &of_box.chain(single).collect::<Vec<_>>(),
+        boundary: &boundary(scene),
         frames,
-        size: picture::DEFAULT_SIZE,
-    }))
+        size,
+    };
+    draw(&Studio::seen_from(&picture, view))
 }

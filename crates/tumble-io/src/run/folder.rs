@@ -22,11 +22,11 @@ pub(super) const FILES: [&str; 9] = [
 ];
 
 /// The file that shows a folder to be taken.
-pub(super) const SCENE: &str = "scene.toml";
+pub(crate) const SCENE: &str = "scene.toml";
 /// One row a body a frame.
-pub(super) const TRAJECTORY: &str = "trajectory.csv";
+pub(crate) const TRAJECTORY: &str = "trajectory.csv";
 /// One row a frame.
-pub(super) const LEDGER: &str = "energy.csv";
+pub(crate) const LEDGER: &str = "energy.csv";
 /// One row a frame for each body in contact.
 pub(super) const CONTACTS: &str = "contacts.csv";
 /// What a run goes on from.

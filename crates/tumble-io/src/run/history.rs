@@ -1,23 +1,16 @@
 //! The rows that a run has already written, read back so that it can go on after them.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
-use std::path::PathBuf;
-
 use tumble::{DQuat, DVec3, World, Wrench};
 
 use super::folder::{CONTACTS, LEDGER, RunFolder, TRAJECTORY};
 use super::ledger::LEDGER_HEADER;
 use super::recorder::Recorder;
 use super::resume::ResumeError;
+use super::rows::{RowError, Rows, parse_contact, parse_ledger, parse_trajectory};
 use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
 use crate::page::{BodyFrame, Film};
 use crate::picture::{Frame, Pose};
-use crate::plot::EnergyRow;
 use crate::scene::Scene;
-
-/// A longer row is none.
-const LONGEST: u64 = 1 << 13;
 
 /// The rows of a run up to a moment.
 #[derive(Debug)]
@@ -46,13 +39,13 @@ impl History {
         if !is_there(TRAJECTORY) && !is_there(LEDGER) {
             return Ok(None);
         }
-        let mut trajectory = Rows::open(folder, TRAJECTORY, TRAJECTORY_HEADER)?;
-        let mut ledger = Rows::open(folder, LEDGER, LEDGER_HEADER)?;
+        let mut trajectory = Rows::open(folder.file(TRAJECTORY), TRAJECTORY_HEADER)?;
+        let mut ledger = Rows::open(folder.file(LEDGER), LEDGER_HEADER)?;
         let mut contacts = Contacts::open(folder)?;
         let mut recorder = Recorder::new(world.body_count());
         let mut film = Film::new(world.body_count());
         let last = world.state().step;
-        let mut row = ledger.next()?.map(|row| ledger_row(&row)).transpose();
+        let mut row = ledger.next()?.map(|row| parse_ledger(&row).ok_or(())).transpose();
         // a run that lost its first rows begins with a later frame
         let first = match row {
             Ok(Some(row)) => (row.time / scene.dt).round() as u64,
@@ -61,16 +54,19 @@ impl History {
         let is_frame =
             if first > last { first == scene.next_frame(last) } else { scene.is_frame(first) };
         if !is_frame {
-            return Err(ledger.wrong("has a first row of a time without a frame"));
+            return Err(ledger.wrong("has a first row of a time without a frame").into());
         }
         let mut step = first;
         while step <= last {
             let time = step as f64 * scene.dt;
             let next = match row {
                 Ok(Some(row)) if row.time == time => row,
-                Ok(None) => return Err(ledger.wrong(&format!("has no row of t = {time} s"))),
+                Ok(None) => {
+                    return Err(ledger.wrong(&format!("has no row of t = {time} s")).into());
+                }
                 _ => {
-                    return Err(ledger.wrong(&format!("has another row than that of t = {time} s")));
+                    let other = format!("has another row than that of t = {time} s");
+                    return Err(ledger.wrong(&other).into());
                 }
             };
             let bodies = bodies((&mut trajectory, &mut contacts), world, time)?;
@@ -80,7 +76,7 @@ impl History {
             film.record(step, &next, bodies.into_iter());
             step = scene.next_frame(step);
             if step <= last {
-                row = ledger.next()?.map(|row| ledger_row(&row)).transpose();
+                row = ledger.next()?.map(|row| parse_ledger(&row).ok_or(())).transpose();
             }
         }
         // of a first frame that is still to come, the row was read but is not kept
@@ -110,20 +106,17 @@ fn bodies(
 }
 
 fn body_frame(row: &str, time: f64, name: &str) -> Option<BodyFrame> {
-    let (of, rest) = row.split_once(',')?;
-    let (body, rest) = rest.split_once(',')?;
-    if of.parse::<f64>().ok()? != time || body != name {
-        return None;
-    }
-    let [px, py, pz, w, x, y, z, vx, vy, vz, wx, wy, wz, lx, ly, lz] = numbers::<16>(rest)?;
-    Some(BodyFrame {
+    let (of, body, numbers) = parse_trajectory(row)?;
+    let [px, py, pz, w, x, y, z, vx, vy, vz, wx, wy, wz, lx, ly, lz] = numbers;
+    let frame = BodyFrame {
         position: DVec3::new(px, py, pz),
         orientation: DQuat::from_xyzw(x, y, z, w),
         velocity: DVec3::new(vx, vy, vz),
         angular_velocity: DVec3::new(wx, wy, wz),
         angular_momentum: DVec3::new(lx, ly, lz),
         contact: Wrench::default(),
-    })
+    };
+    (of == time && body == name).then_some(frame)
 }
 
 /// The rows of `contacts.csv`, of which there are only some.
@@ -135,8 +128,8 @@ struct Contacts {
 }
 
 impl Contacts {
-    fn open(folder: &RunFolder) -> Result<Self, ResumeError> {
-        let rows = Rows::open(folder, CONTACTS, CONTACTS_HEADER)?;
+    fn open(folder: &RunFolder) -> Result<Self, RowError> {
+        let rows = Rows::open(folder.file(CONTACTS), CONTACTS_HEADER)?;
         let kept = rows.header;
         let mut contacts = Self { rows, next: None, kept };
         contacts.advance();
@@ -144,7 +137,7 @@ impl Contacts {
     }
 
     /// Contact of one body in one frame; to be asked in the order of `trajectory.csv`.
-    fn of(&mut self, time: f64, name: &str) -> Result<Wrench, ResumeError> {
+    fn of(&mut self, time: f64, name: &str) -> Result<Wrench, RowError> {
         match &self.next {
             Some((of, body, wrench)) if *of == time && body == name => {
                 let wrench = *wrench;
@@ -168,71 +161,7 @@ impl Contacts {
 }
 
 fn contact(row: &str) -> Option<(f64, String, Wrench)> {
-    let (time, rest) = row.split_once(',')?;
-    let (body, rest) = rest.split_once(',')?;
-    let [fx, fy, fz, tx, ty, tz] = numbers::<6>(rest)?;
+    let (time, body, [fx, fy, fz, tx, ty, tz]) = parse_contact(row)?;
     let (force, torque) = (DVec3::new(fx, fy, fz), DVec3::new(tx, ty, tz));
-    Some((time.parse().ok()?, body.to_owned(), Wrench { force, torque }))
-}
-
-fn ledger_row(row: &str) -> Result<EnergyRow, ()> {
-    let [time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual] =
-        numbers::<9>(row).ok_or(())?;
-    let row =
-        EnergyRow { time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual };
-    Ok(row)
-}
-
-/// Exactly `N` numbers.
-fn numbers<const N: usize>(row: &str) -> Option<[f64; N]> {
-    let mut numbers = [0.0; N];
-    let mut fields = row.split(',');
-    for number in &mut numbers {
-        *number = fields.next()?.parse().ok()?;
-    }
-    fields.next().is_none().then_some(numbers)
-}
-
-/// The rows of a CSV file, one by one.
-struct Rows {
-    path: PathBuf,
-    from: BufReader<File>,
-    /// Bytes of the header.
-    header: u64,
-    /// Bytes read so far.
-    at: u64,
-}
-
-impl Rows {
-    fn open(folder: &RunFolder, name: &str, header: &str) -> Result<Self, ResumeError> {
-        let path = folder.file(name);
-        let file = File::open(&path)
-            .map_err(|error| ResumeError::Rows(path.clone(), format!("cannot be read: {error}")))?;
-        let mut rows = Self { path, from: BufReader::new(file), header: 0, at: 0 };
-        if rows.next()?.as_deref() != Some(header) {
-            return Err(rows.wrong("does not begin with its header"));
-        }
-        rows.header = rows.at;
-        Ok(rows)
-    }
-
-    /// The next row that is whole.
-    fn next(&mut self) -> Result<Option<String>, ResumeError> {
-        let mut row = Vec::new();
-        let read = self.from.by_ref().take(LONGEST).read_until(b'\n', &mut row);
-        let read = read.map_err(|error| self.wrong(&format!("cannot be read: {error}")))?;
-        if row.pop() != Some(b'\n') {
-            let torn = (read as u64) < LONGEST;
-            return if torn { Ok(None) } else { Err(self.wrong("has a row without an end")) };
-        }
-        self.at += read as u64;
-        match String::from_utf8(row) {
-            Ok(row) => Ok(Some(row)),
-            Err(_) => Err(self.wrong("has a row that is no text")),
-        }
-    }
-
-    fn wrong(&self, what: &str) -> ResumeError {
-        ResumeError::Rows(self.path.clone(), what.to_owned())
-    }
+    Some((time, body.to_owned(), Wrench { force, torque }))
 }

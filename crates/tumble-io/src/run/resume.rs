@@ -7,6 +7,7 @@ use tumble::StateError;
 use super::folder::{CHECKPOINT, FILES, RunError, RunFolder, SCENE};
 use super::history::History;
 use super::recording::Recording;
+use super::rows::RowError;
 use super::runner::{Finished, Progress, Run};
 use crate::checkpoint::{Checkpoint, CheckpointError, read_checkpoint};
 use crate::scene::{LoadOptions, Loaded, SceneError, Source, load_text};
@@ -29,8 +30,8 @@ pub enum ResumeError {
     },
     /// The folder holds files of something else.
     OtherRun(PathBuf),
-    /// The rows of this file are not those that the run wrote.
-    Rows(PathBuf, String),
+    /// The rows of a file are not those that the run wrote.
+    Rows(RowError),
 }
 
 impl std::fmt::Display for ResumeError {
@@ -52,17 +53,24 @@ impl std::fmt::Display for ResumeError {
                  name another folder with --out",
                 path.display()
             ),
-            Self::Rows(path, what) => write!(
+            Self::Rows(error) => write!(
                 f,
-                "{} {what}, so the run cannot go on after its rows; move the checkpoint to a \
+                "{} {}, so the run cannot go on after its rows; move the checkpoint to a \
                  folder of its own to go on without them",
-                path.display()
+                error.path.display(),
+                error.what
             ),
         }
     }
 }
 
 impl std::error::Error for ResumeError {}
+
+impl From<RowError> for ResumeError {
+    fn from(error: RowError) -> Self {
+        Self::Rows(error)
+    }
+}
 
 /// A run that is ready to go on.
 #[derive(Debug)]

@@ -15,15 +15,26 @@ pub fn write_frame(out: &mut impl Write, world: &World) -> io::Result<()> {
     for body in world.bodies() {
         let (p, q, v) = (body.position(), body.orientation(), body.velocity());
         let (w, l) = (body.angular_velocity(), body.angular_momentum());
-        write!(out, "{:?},{}", world.time(), body.name())?;
         let numbers =
             [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z, l.x, l.y, l.z];
-        for number in numbers {
-            write!(out, ",{number:?}")?;
-        }
-        writeln!(out)?;
+        write_row(out, (world.time(), body.name()), numbers)?;
     }
     Ok(())
+}
+
+/// Writes the row of one body at one time (s).
+pub(crate) fn write_row<const N: usize>(
+    out: &mut impl Write,
+    (time, body): (f64, &str),
+    numbers: [f64; N],
+) -> io::Result<()> {
+    let mut shortest = zmij::Buffer::new();
+    write!(out, "{},{body}", shortest.format(time))?;
+    for number in numbers {
+        out.write_all(b",")?;
+        out.write_all(shortest.format(number).as_bytes())?;
+    }
+    out.write_all(b"\n")
 }
 
 /// The columns of `contacts.csv`.
@@ -41,11 +52,7 @@ pub fn write_contacts(out: &mut impl Write, world: &World) -> io::Result<()> {
             continue;
         }
         let (f, t) = (wrench.force, wrench.torque);
-        write!(out, "{:?},{}", world.time(), body.name())?;
-        for number in [f.x, f.y, f.z, t.x, t.y, t.z] {
-            write!(out, ",{number:?}")?;
-        }
-        writeln!(out)?;
+        write_row(out, (world.time(), body.name()), [f.x, f.y, f.z, t.x, t.y, t.z])?;
     }
     Ok(())
 }
