@@ -19,6 +19,8 @@ pub(crate) struct RampSums {
     pub moment: DVec3,
     /// Σ f².
     pub squares: f64,
+    /// The largest f, where no node was summed whole, and so each particle was looked at.
+    pub largest: Option<f64>,
 }
 
 impl Particles {
@@ -40,7 +42,7 @@ impl Particles {
         simd.vectorize(
             #[inline(always)]
             || {
-                let mut whole = RampSums::default();
+                let mut whole = RampSums { largest: Some(0.0), ..RampSums::default() };
                 let mut lanes = LaneSums::zero(simd);
                 let mut waiting = Waiting::new(self.nodes());
                 while let Some((branch, _)) = waiting.next() {
@@ -185,6 +187,7 @@ impl RampSums {
         self.sum += node.count * mean;
         self.moment += node.mean * (node.count * mean) - turned;
         self.squares += node.count * mean * mean + ramp.slope.dot(turned);
+        self.largest = None;
     }
 
     #[inline(always)]
@@ -193,6 +196,7 @@ impl RampSums {
             sum: self.sum + sum(lanes.sum),
             moment: self.moment + lanes.moment.sum(),
             squares: self.squares + sum(lanes.squares),
+            largest: self.largest.map(|_| largest(lanes.largest)),
         }
     }
 }
@@ -202,13 +206,14 @@ struct LaneSums<S: Simd> {
     sum: f64x8<S>,
     moment: Vec3x8<S>,
     squares: f64x8<S>,
+    largest: f64x8<S>,
 }
 
 impl<S: Simd> LaneSums<S> {
     #[inline(always)]
     fn zero(simd: S) -> Self {
         let zero = f64x8::splat(simd, 0.0);
-        Self { sum: zero, moment: Vec3x8::splat(simd, DVec3::ZERO), squares: zero }
+        Self { sum: zero, moment: Vec3x8::splat(simd, DVec3::ZERO), squares: zero, largest: zero }
     }
 
     #[inline(always)]
@@ -222,6 +227,7 @@ impl<S: Simd> LaneSums<S> {
         self.sum += value;
         self.moment += group.place * value;
         self.squares += value * value;
+        self.largest = value.simd_gt(self.largest).select(value, self.largest);
     }
 }
 

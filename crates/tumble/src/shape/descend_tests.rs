@@ -56,6 +56,9 @@ fn check(places: &[DVec3], ramp: &Ramp, within: Option<&Ramp>) -> Result<(), Tes
     prop_assert!((best.moment - expected.moment).length() <= play * reach, "{best:?} {expected:?}");
     prop_assert!((best.squares - expected.squares).abs() <= play * size, "{best:?} {expected:?}");
     let found = particles.largest(levels()[0], ramp);
+    if let (Some(largest), None) = (best.largest, within) {
+        prop_assert_eq!(largest, found);
+    }
     prop_assert!((found - largest).abs() <= 1e-14 * size, "{found} {largest}");
     // which particles: all that are clearly behind, none that is clearly before
     let mut slots = Vec::new();
@@ -132,6 +135,9 @@ fn a_tilted_flat_face_is_not_opened_to_its_particles() {
 fn no_particle_no_sum() {
     let none = Particles::default();
     let ramp = Ramp { offset: 1.0, slope: DVec3::X };
-    assert_eq!(none.sums(levels()[0], &ramp, None), RampSums::default());
+    assert_eq!(
+        none.sums(levels()[0], &ramp, None),
+        RampSums { largest: Some(0.0), ..RampSums::default() }
+    );
     assert_eq!(none.largest(levels()[0], &ramp), 0.0);
 }

@@ -29,7 +29,8 @@ impl Springs {
             if law.damping > 0.0 {
                 springs.damped += push;
             }
-            let deepest = place.body.shape.particles().largest(place.level, &wall.depth);
+            let search = || place.body.shape.particles().largest(place.level, &wall.depth);
+            let deepest = depths.largest.unwrap_or_else(search);
             springs.max_depth = springs.max_depth.max(deepest);
         }
         springs
