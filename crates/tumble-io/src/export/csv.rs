@@ -14,7 +14,7 @@ pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportErro
     for (index, frame) in frames.clone().enumerate() {
         tell(watch, index, frames.len())?;
         for (body, pose) in job.replay.world.bodies().zip(&frame.poses) {
-            write_row(&mut out, (frame.time, body.name()), numbers(pose)).map_err(failed)?;
+            write_row(&mut out, (frame.time, Some(body.name())), &numbers(pose)).map_err(failed)?;
         }
     }
     Ok(Exported { frames: frames.len(), bytes: out.finish()? })

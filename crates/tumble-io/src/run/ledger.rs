@@ -1,7 +1,10 @@
 //! `energy.csv`: where every joule is, one row a frame.
 
+use std::io::{self, Write};
+
 use tumble::Energy;
 
+use super::trajectory::write_row;
 use crate::plot::EnergyRow;
 
 /// The columns.
@@ -23,11 +26,10 @@ pub fn ledger_row(time: f64, energy: &Energy, start: f64) -> EnergyRow {
     }
 }
 
-/// The row as text, numbers in the shortest form that reads back to the same double.
-pub(super) fn line(row: &EnergyRow) -> String {
+/// Writes the row, numbers in the shortest form that reads back to the same double.
+pub(super) fn write_ledger(out: &mut impl Write, row: &EnergyRow) -> io::Result<()> {
     let EnergyRow { time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual } =
-        row;
-    format!(
-        "{time:?},{kinetic:?},{gravitational:?},{elastic:?},{drag:?},{dashpot:?},{slip:?},{total:?},{residual:?}"
-    )
+        *row;
+    let numbers = [kinetic, gravitational, elastic, drag, dashpot, slip, total, residual];
+    write_row(out, (time, None), &numbers)
 }

@@ -9,6 +9,7 @@ mod recording;
 mod resume;
 mod rows;
 mod runner;
+mod scribe;
 mod summary;
 mod trajectory;
 
@@ -19,7 +20,7 @@ pub use resume::{ResumeError, Resumption};
 pub use rows::RowError;
 pub use runner::{Finished, Progress, run};
 pub use summary::Summary;
-pub use trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER, write_contacts, write_frame};
+pub use trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
 
 pub(crate) use drawing::{boundary, in_studio};
 pub(crate) use folder::{LEDGER, SCENE, TRAJECTORY};

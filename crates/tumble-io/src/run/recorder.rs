@@ -1,8 +1,6 @@
 //! What a run remembers for its pictures: few enough frames to keep, however long it is.
 
-use tumble::World;
-
-use crate::picture::{Frame, Pose};
+use crate::picture::Frame;
 use crate::plot::EnergyRow;
 
 /// Frames and ledger rows, thinned out by half whenever they become too many.
@@ -22,15 +20,6 @@ impl Recorder {
         // about a million poses in all: some tens of megabytes
         let most = (1_000_000 / body_count.max(1)).clamp(16, 4096);
         Self { frames: Vec::new(), rows: Vec::new(), most, stride: 1, seen: 0, last: None }
-    }
-
-    /// Remembers the world as it is now.
-    pub fn record(&mut self, world: &World, row: EnergyRow) {
-        let poses = world
-            .bodies()
-            .map(|body| Pose { position: body.position(), orientation: body.orientation() })
-            .collect();
-        self.record_frame(Frame { time: world.time(), poses }, row);
     }
 
     /// Remembers a frame, as it was recorded.

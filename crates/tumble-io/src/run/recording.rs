@@ -1,7 +1,7 @@
 //! The files that grow while a run goes on, and its checkpoints.
 
 use std::fs::File;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, Read, Write};
 use std::time::{Duration, Instant};
 
 use tumble::{State, World};
@@ -9,9 +9,10 @@ use tumble::{State, World};
 use super::drawing::motion_picture;
 use super::folder::{CHECKPOINT, CONTACTS, LEDGER, RunError, RunFolder, TRAJECTORY};
 use super::history::History;
-use super::ledger::{LEDGER_HEADER, ledger_row, line};
+use super::ledger::{LEDGER_HEADER, ledger_row};
 use super::recorder::Recorder;
-use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER, write_contacts, write_frame};
+use super::scribe::{Files, Memory, Moment, Scribe, still};
+use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
 use crate::checkpoint;
 use crate::page::{self, BodyFrame, Film};
 use crate::plot::{EnergyRow, energy_svg};
@@ -20,19 +21,10 @@ use crate::scene::Scene;
 /// A checkpoint comes about every ten seconds, but takes no more than a tenth of all time.
 const LEAST_WAIT: Duration = Duration::from_secs(10);
 
-/// The files that grow.
-struct Files {
-    trajectory: BufWriter<File>,
-    ledger: BufWriter<File>,
-    contacts: BufWriter<File>,
-}
-
 /// The files that grow while a run goes on, and its checkpoints.
 pub(super) struct Recording<'a> {
     folder: &'a RunFolder,
-    files: Files,
-    recorder: Recorder,
-    film: Film,
+    scribe: Scribe,
     start: f64,
     toml: String,
     /// When the next checkpoint is due by the clock.
@@ -57,8 +49,10 @@ impl<'a> Recording<'a> {
             ledger: begin(LEDGER, LEDGER_HEADER)?,
             contacts: begin(CONTACTS, CONTACTS_HEADER)?,
         };
-        let memory = (Recorder::new(world.body_count()), Film::new(world.body_count()));
-        Ok(Self::of(folder, files, memory, scene, start))
+        let bodies = world.body_count();
+        let memory = Memory { recorder: Recorder::new(bodies), film: Film::new(bodies) };
+        let scribe = Scribe::start(folder, files, memory, names(world));
+        Ok(Self::of(folder, scribe, scene, start))
     }
 
     /// Goes on after the rows of `history`, in its own folder or in another one.
@@ -66,7 +60,7 @@ impl<'a> Recording<'a> {
         source: &RunFolder,
         folder: &'a RunFolder,
         history: History,
-        scene: &Scene,
+        (scene, world): (&Scene, &World),
         start: f64,
     ) -> Result<Self, RunError> {
         let History { trajectory, ledger, contacts, recorder, film } = history;
@@ -85,37 +79,22 @@ impl<'a> Recording<'a> {
             ledger: open(LEDGER, ledger)?,
             contacts: open(CONTACTS, contacts)?,
         };
-        Ok(Self::of(folder, files, (recorder, film), scene, start))
+        let scribe = Scribe::start(folder, files, Memory { recorder, film }, names(world));
+        Ok(Self::of(folder, scribe, scene, start))
     }
 
-    fn of(
-        folder: &'a RunFolder,
-        files: Files,
-        (recorder, film): (Recorder, Film),
-        scene: &Scene,
-        start: f64,
-    ) -> Self {
+    fn of(folder: &'a RunFolder, scribe: Scribe, scene: &Scene, start: f64) -> Self {
         let (toml, due) = (scene.to_toml(), Instant::now() + LEAST_WAIT);
-        Self { folder, files, recorder, film, start, toml, due }
+        Self { folder, scribe, start, toml, due }
     }
 
     /// One more frame.
     pub fn frame(&mut self, world: &World) -> Result<(), RunError> {
         let row = self.row(world)?;
-        let Files { trajectory, ledger, contacts } = &mut self.files;
-        write_frame(trajectory, world).map_err(|e| failed(self.folder, TRAJECTORY, e))?;
-        writeln!(ledger, "{}", line(&row)).map_err(|e| failed(self.folder, LEDGER, e))?;
-        write_contacts(contacts, world).map_err(|e| failed(self.folder, CONTACTS, e))?;
-        self.recorder.record(world, row);
-        self.film.record(world.state().step, &row, BodyFrame::all(world));
-        Ok(())
-    }
-
-    /// The world as it is now, for the pictures alone.
-    pub fn look(&mut self, world: &World) -> Result<EnergyRow, RunError> {
-        let row = self.row(world)?;
-        self.recorder.record(world, row);
-        Ok(row)
+        let mut bodies = self.scribe.room();
+        bodies.clear();
+        bodies.extend(BodyFrame::all(world));
+        self.scribe.write(Moment { step: world.state().step, row, bodies })
     }
 
     /// The ledger now; one that cannot be drawn up is the end of the run.
@@ -133,12 +112,7 @@ impl<'a> Recording<'a> {
     /// Writes a checkpoint; the rows of all frames until now reach the disk before it.
     pub fn checkpoint(&mut self, scene: &Scene, state: &State) -> Result<(), RunError> {
         let begin = Instant::now();
-        let Files { trajectory, ledger, contacts } = &mut self.files;
-        for (name, file) in [(TRAJECTORY, trajectory), (LEDGER, ledger), (CONTACTS, contacts)] {
-            file.flush()
-                .and_then(|()| file.get_ref().sync_data())
-                .map_err(|e| failed(self.folder, name, e))?;
-        }
+        self.scribe.settle()?;
         let names = (scene.name.as_str(), self.toml.as_str());
         let bytes = checkpoint::encode(names, (scene.force, self.start), state);
         self.folder.write(CHECKPOINT, &bytes)?;
@@ -147,23 +121,31 @@ impl<'a> Recording<'a> {
     }
 
     /// Draws the pictures; returns the ledger of the last state.
-    pub fn finish(mut self, scene: &Scene, world: &World) -> Result<EnergyRow, RunError> {
-        let row = self.look(world)?;
-        let (frames, rows) = self.recorder.finish();
+    pub fn finish(self, scene: &Scene, world: &World) -> Result<EnergyRow, RunError> {
+        let row = self.row(world)?;
+        let Memory { mut recorder, mut film } = self.scribe.finish()?;
+        // a run may end between two frames; of one that went on without its first rows there may be none yet
+        let bodies: Vec<_> = BodyFrame::all(world).collect();
+        recorder.record_frame(still(row.time, &bodies), row);
+        if film.is_empty() {
+            film.record(world.state().step, &row, bodies.into_iter());
+        }
+        let (frames, rows) = recorder.finish();
+        let draw = |name: &str, error: String| RunError::Draw(self.folder.file(name), error);
         let svg = energy_svg(&format!("{}: energy", scene.name), &rows)
-            .map_err(|e| RunError::Draw(self.folder.file("energy.svg"), e.to_string()))?;
+            .map_err(|error| draw("energy.svg", error.to_string()))?;
         self.folder.write("energy.svg", svg.as_bytes())?;
         let png = motion_picture(scene, world, &frames)
-            .map_err(|e| RunError::Draw(self.folder.file("motion.png"), e.to_string()))?;
+            .map_err(|error| draw("motion.png", error.to_string()))?;
         self.folder.write("motion.png", &png)?;
-        // of a run that went on without its first rows there may be no frame yet
-        if self.film.is_empty() {
-            self.film.record(world.state().step, &row, BodyFrame::all(world));
-        }
-        let html = page::motion_html(&page::Head::of(scene, world), &self.film);
+        let html = page::motion_html(&page::Head::of(scene, world), &film);
         self.folder.write("motion.html", html.as_bytes())?;
         Ok(row)
     }
+}
+
+fn names(world: &World) -> Vec<String> {
+    world.bodies().map(|body| body.name().to_owned()).collect()
 }
 
 fn failed(folder: &RunFolder, name: &str, error: io::Error) -> RunError {

@@ -143,13 +143,13 @@ impl Resumption {
             None => own.unfinish()?,
         }
         let mut recording = match history {
-            Some(history) => Recording::go_on(&own, folder, history, &scene, energy_start)?,
+            Some(history) => {
+                Recording::go_on(&own, folder, history, (&scene, &world), energy_start)?
+            }
             None => {
                 let mut recording = Recording::start(folder, &scene, &world, energy_start)?;
                 if scene.is_frame(world.state().step) {
                     recording.frame(&world)?;
-                } else {
-                    recording.look(&world)?;
                 }
                 recording
             }

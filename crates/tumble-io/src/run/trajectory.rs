@@ -2,39 +2,31 @@
 
 use std::io::{self, Write};
 
-use tumble::{World, Wrench};
+use tumble::Wrench;
+
+use crate::page::BodyFrame;
 
 /// The columns.
 pub const TRAJECTORY_HEADER: &str = "time,body,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,lx,ly,lz";
 
-/// Writes one row for each body. Numbers have the shortest form that reads back to the same double.
+/// Writes one row for each body at a time (s). Numbers have the shortest form that reads back to the same double.
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write_frame(out: &mut impl Write, world: &World) -> io::Result<()> {
-    for body in world.bodies() {
-        let (p, q, v) = (body.position(), body.orientation(), body.velocity());
-        let (w, l) = (body.angular_velocity(), body.angular_momentum());
+pub(super) fn write_frame(
+    out: &mut impl Write,
+    time: f64,
+    names: &[String],
+    bodies: &[BodyFrame],
+) -> io::Result<()> {
+    for (name, body) in names.iter().zip(bodies) {
+        let (p, q, v) = (body.position, body.orientation, body.velocity);
+        let (w, l) = (body.angular_velocity, body.angular_momentum);
         let numbers =
             [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z, w.x, w.y, w.z, l.x, l.y, l.z];
-        write_row(out, (world.time(), body.name()), numbers)?;
+        write_row(out, (time, Some(name)), &numbers)?;
     }
     Ok(())
-}
-
-/// Writes the row of one body at one time (s).
-pub(crate) fn write_row<const N: usize>(
-    out: &mut impl Write,
-    (time, body): (f64, &str),
-    numbers: [f64; N],
-) -> io::Result<()> {
-    let mut shortest = zmij::Buffer::new();
-    write!(out, "{},{body}", shortest.format(time))?;
-    for number in numbers {
-        out.write_all(b",")?;
-        out.write_all(shortest.format(number).as_bytes())?;
-    }
-    out.write_all(b"\n")
 }
 
 /// The columns of `contacts.csv`.
@@ -45,14 +37,36 @@ pub const CONTACTS_HEADER: &str = "time,body,fx,fy,fz,tx,ty,tz";
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write_contacts(out: &mut impl Write, world: &World) -> io::Result<()> {
-    for (index, body) in world.bodies().enumerate() {
-        let wrench = world.contact_wrench(index);
-        if wrench == Wrench::default() {
-            continue;
+pub(super) fn write_contacts(
+    out: &mut impl Write,
+    time: f64,
+    names: &[String],
+    bodies: &[BodyFrame],
+) -> io::Result<()> {
+    for (name, body) in names.iter().zip(bodies) {
+        if body.contact != Wrench::default() {
+            let (f, t) = (body.contact.force, body.contact.torque);
+            write_row(out, (time, Some(name)), &[f.x, f.y, f.z, t.x, t.y, t.z])?;
         }
-        let (f, t) = (wrench.force, wrench.torque);
-        write_row(out, (world.time(), body.name()), [f.x, f.y, f.z, t.x, t.y, t.z])?;
     }
     Ok(())
+}
+
+/// Writes a row: the time (s), the body if it is of one, and numbers.
+pub(crate) fn write_row(
+    out: &mut impl Write,
+    (time, body): (f64, Option<&str>),
+    numbers: &[f64],
+) -> io::Result<()> {
+    let mut shortest = zmij::Buffer::new();
+    out.write_all(shortest.format(time).as_bytes())?;
+    if let Some(body) = body {
+        out.write_all(b",")?;
+        out.write_all(body.as_bytes())?;
+    }
+    for &number in numbers {
+        out.write_all(b",")?;
+        out.write_all(shortest.format(number).as_bytes())?;
+    }
+    out.write_all(b"\n")
 }
