@@ -1,9 +1,19 @@
 #!/usr/bin/env bash
 # The checks that a change must pass; the same for a person and for CI.
+# With --e2e, those that need a browser and other programs to judge exports; it installs them.
 set -euo pipefail
 cd "$(dirname "$0")"
 
 say() { printf '\n== %s\n' "$1"; }
+
+if [ "${1:-}" = --e2e ]; then
+    say "the page in a browser"
+    e2e/page.sh
+    say "exports, by the programs that read them"
+    e2e/exports.sh
+    say "all end-to-end checks passed"
+    exit
+fi
 
 say "format"
 cargo fmt --all --check

@@ -11,8 +11,8 @@ if ! [ -d e2e/.tools/node_modules/playwright-core ]; then
     PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm install --silent --no-audit --no-fund --prefix e2e/.tools playwright-core@1 ws@8
 fi
 
-cargo build -p tumble-cli --locked
-tumble=${CARGO_TARGET_DIR:-target}/debug/tumble
+cargo build --release -p tumble-cli --locked
+tumble=${CARGO_TARGET_DIR:-target}/release/tumble
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for scene in task2 task2-cat racket many slope; do

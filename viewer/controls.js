@@ -63,7 +63,10 @@ export class Controls {
     const useLog = log && min > 0;
     const toPart = (v) => (useLog ? Math.log(v / min) / Math.log(max / min) : (v - min) / (max - min));
     const toValue = (p) => (useLog ? min * (max / min) ** p : min + p * (max - min));
-    const label = key.split('.').pop().replaceAll('_', ' ');
+    const parts = key.split('.');
+    const axis = 'xyz'[parts.at(-1)];
+    const name = (axis ? `${parts.at(-2)} ${axis}` : parts.at(-1)).replaceAll('_', ' ');
+    const label = parts[0] === 'body' ? `body ${Number(parts[1]) + 1}: ${name}` : name;
     const input = element('input', { type: 'range', min: '0', max: String(STEPS), step: '1', 'aria-label': `${label} in ${unit || 'plain numbers'}` });
     const value = element('output', {});
     const show = (v) => {
