@@ -19,7 +19,7 @@ in contact with the floor. Dashpots and friction are tumble's alone: the loop be
 `splitting` pays for exact flight.
 
 PAGE
-cargo bench --locked -p tumble-bench --bench speed 2>/dev/null >>"$page"
+cargo bench --locked -p tumble-bench --bench speed >>"$page"
 {
     printf '\n## Bouncing, beside MuJoCo and Rapier\n\n'
     printf 'One body of 40,000 points in a closed box; [bench/README.md](../bench/README.md) has the settings that make it fair.\n\n'

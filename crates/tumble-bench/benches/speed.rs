@@ -12,7 +12,7 @@ type Outcome = Result<(), Box<dyn Error>>;
 
 fn main() -> Outcome {
     // `cargo test --benches` is no time to measure
-    if std::env::args().any(|arg| arg == "--test") {
+    if !std::env::args().any(|arg| arg == "--bench") {
         return Ok(());
     }
     println!("{}\n", machine());
@@ -28,14 +28,14 @@ fn steps() -> Outcome {
     );
     println!("|---|---|---|---|---|---|---|---|");
     for (count, motions) in [
-        (8, [Motion::Flight, Motion::Bouncing, Motion::Rest, Motion::RoughRest].as_slice()),
-        (42, &[Motion::Flight, Motion::Bouncing, Motion::Rest, Motion::RoughRest]),
+        (8, [Motion::Flight, Motion::Bouncing].as_slice()),
+        (42, &[Motion::Flight, Motion::Bouncing]),
         (4025, &[Motion::Flight, Motion::Bouncing, Motion::Rest, Motion::RoughRest]),
         (1_000_000, &[Motion::Flight, Motion::Rest, Motion::DampedRest, Motion::RoughRest]),
     ] {
         for &motion in motions {
             for integrator in [Integrator::Euler, Integrator::Splitting] {
-                let times = Trial::new(count, motion, integrator)?.measure();
+                let times = Trial::new(count, motion, integrator)?.measure()?;
                 let [compiled, vectors, tumble] = times.map(|seconds| seconds * 1e6);
                 println!(
                     "| {count} | {} | {} | {} | {} | {} | {} | {} |",
@@ -103,7 +103,7 @@ fn runs() -> Outcome {
     println!("## Long runs, with all their files\n");
     println!("| scene | steps | frames | stepping (s) | everything (s) | stepping ÷ everything |");
     println!("|---|---|---|---|---|---|");
-    for (scene, duration) in [("racket", 2000.0), ("task2", 2000.0), ("task2-cat", 600.0)] {
+    for (scene, duration) in [("racket", 4000.0), ("task2", 4000.0), ("task2-cat", 3000.0)] {
         let run = wall_seconds(scene, duration)?;
         println!(
             "| {scene} | {} | {} | {} | {} | {} |",

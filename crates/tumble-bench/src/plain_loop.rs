@@ -24,8 +24,6 @@ pub struct PlainLoop {
     places: Vec<DVec3>,
     /// Coordinates of the particles in the body frame (m), padded to groups of eight.
     columns: [Vec<f64>; 3],
-    /// 1 for each particle, 0 for padding.
-    real: Vec<f64>,
     particle_mass: f64,
     mass: f64,
     inverse_inertia: DMat3,
@@ -51,13 +49,10 @@ impl PlainLoop {
             column.resize(padded, 0.0);
             column
         };
-        let mut real = vec![1.0; particles.len()];
-        real.resize(padded, 0.0);
         Self {
             style,
             places: particles.iter().collect(),
             columns: [column(0), column(1), column(2)],
-            real,
             particle_mass: body.particle_mass(),
             mass: body.mass,
             inverse_inertia: body.inverse_inertia,
@@ -98,7 +93,10 @@ impl PlainLoop {
         for &r in &self.places {
             let arm = rotation * r;
             let place = self.state.position + arm;
-            let mut f = weight - (self.state.velocity + omega.cross(arm)) * self.drag;
+            let mut f = weight;
+            if self.drag > 0.0 {
+                f -= (self.state.velocity + omega.cross(arm)) * self.drag;
+            }
             for &(normal, offset) in &self.walls {
                 let depth = offset - normal.dot(place);
                 if depth > 0.0 {
@@ -126,19 +124,22 @@ impl PlainLoop {
                 let mut torque = force;
                 let [x, y, z] = &self.columns;
                 let (x, y, z) = (x.as_chunks().0, y.as_chunks().0, z.as_chunks().0);
-                let real = self.real.as_chunks().0;
-                for (((x, y), z), real) in x.iter().zip(y).zip(z).zip(real) {
+                for (first, ((x, y), z)) in (0..).step_by(LANES).zip(x.iter().zip(y).zip(z)) {
                     let r = Three::load(simd, x, y, z);
                     let arm = Three(r.dot(rows[0]), r.dot(rows[1]), r.dot(rows[2]));
                     let place = position.plus(arm);
-                    let mut f = weight.minus(velocity.plus(omega.cross(arm)).times(self.drag));
+                    let mut f = weight;
+                    if self.drag > 0.0 {
+                        f = f.minus(velocity.plus(omega.cross(arm)).times(self.drag));
+                    }
                     for (normal, offset) in &self.walls {
                         let depth = f64x8::splat(simd, *offset) - place.dot(*normal);
                         let push = depth.simd_gt(zero).select(depth, zero) * self.stiffness;
                         f = f.plus(Three(push * normal.x, push * normal.y, push * normal.z));
                     }
-                    let real = f64x8::simd_from(simd, *real);
-                    let f = Three(f.0 * real, f.1 * real, f.2 * real);
+                    if first + LANES > self.places.len() {
+                        f = f.first(simd, self.places.len() - first);
+                    }
                     force = force.plus(f);
                     torque = torque.plus(arm.cross(f));
                 }
@@ -180,6 +181,16 @@ impl<S: Simd> Three<S> {
     #[inline(always)]
     fn cross(self, o: Self) -> Self {
         Self(self.1 * o.2 - self.2 * o.1, self.2 * o.0 - self.0 * o.2, self.0 * o.1 - self.1 * o.0)
+    }
+    /// The first `count` lanes, and zero in the others.
+    #[inline(always)]
+    fn first(self, simd: S, count: usize) -> Self {
+        let keep = |lanes: f64x8<S>| {
+            let mut lanes: [f64; LANES] = lanes.into();
+            lanes[count..].fill(0.0);
+            f64x8::simd_from(simd, lanes)
+        };
+        Self(keep(self.0), keep(self.1), keep(self.2))
     }
     #[inline(always)]
     fn total(self) -> DVec3 {

@@ -40,7 +40,7 @@ pub fn wall_seconds(scene: &str, duration: f64) -> Result<Run, Box<dyn Error>> {
     })
 }
 
-/// The processor and the date of the measurement, in a sentence.
+/// The processor, in a sentence.
 pub fn machine() -> String {
     let cpu = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = cpu.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));

@@ -69,6 +69,7 @@ pub fn sphere_mesh(rings: u32) -> Mesh {
 pub struct Trial {
     world: World,
     restart: u64,
+    rests: bool,
 }
 
 const RADIUS: f64 = 0.3;
@@ -121,25 +122,37 @@ impl Trial {
             .body(body)
             .build()?;
         let restart = if motion == Motion::Bouncing { 3000 } else { u64::MAX };
-        Ok(Self { world, restart })
+        Ok(Self { world, restart, rests })
     }
 
     /// Times one step of the loop as compiled, of the loop in vectors, and of the world (s), in turns.
-    pub fn measure(&mut self) -> [f64; 3] {
+    ///
+    /// # Errors
+    /// When a step fails, or a body that is to rest does not.
+    pub fn measure(&mut self) -> Result<[f64; 3], Box<dyn std::error::Error>> {
+        let mut failed = Ok(());
         let mut compiled = looped(PlainLoop::of(&self.world, Style::Compiled), self.restart);
         let mut vectors = looped(PlainLoop::of(&self.world, Style::Vectors), self.restart);
         let (world, restart) = (&mut self.world, self.restart);
         let start = world.state().clone();
         let mut stepped = |steps: u64| {
             for _ in 0..steps {
-                // a world that fails stays as it is, and shows as a motion that ends
-                let _ = world.step();
+                let stepped = world.step();
+                if failed.is_ok() {
+                    failed = stepped.map_err(|error| error.to_string());
+                }
                 if world.state().step % restart == 0 {
+                    // it was a state of this world before
                     let _ = world.restore(start.clone());
                 }
             }
         };
-        side_by_side([&mut compiled, &mut vectors, &mut stepped])
+        let times = side_by_side([&mut compiled, &mut vectors, &mut stepped]);
+        failed?;
+        if self.rests && self.world.energy().elastic == 0.0 {
+            return Err("the body has left the floor".into());
+        }
+        Ok(times)
     }
 
     /// The world, as it is now.

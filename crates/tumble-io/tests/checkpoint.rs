@@ -111,7 +111,7 @@ fn other_files_are_told_by_what_they_are() {
     let mut later = checkpoint().to_bytes();
     later[MAGIC.len()..][..4].copy_from_slice(&(VERSION + 6).to_le_bytes());
     says(&later, "damaged");
-    says(&sign(later), "format version 7, but this program reads version 1");
+    says(&sign(later), "format version 8, but this program reads version 2");
     let folder = tempfile::tempdir().unwrap();
     assert!(matches!(read_checkpoint(folder.path()), Err(CheckpointError::NoFile)));
     let missing = read_checkpoint(&folder.path().join("no")).unwrap_err();

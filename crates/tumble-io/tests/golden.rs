@@ -10,16 +10,16 @@ use tumble_io::scene::{BUILTIN, LoadOptions, load_builtin};
 
 /// Name and state hash after 400 steps.
 const GOLDEN: &[(&str, &str)] = &[
-    ("task1", "162106944c9a2cc1adaeaf668f2a96bd"),
-    ("task2", "b8b9369ae573bdbdf32b3740f228c13e"),
-    ("task1-cat", "8accbc5685a98681f1d8a32c8d86afdb"),
-    ("task2-cat", "b8d48a49af920d5119f884d44603fe4b"),
+    ("task1", "89784919b55608302bf0f2ba8e450a37"),
+    ("task2", "166c845789beb0781e3d64d734f8506f"),
+    ("task1-cat", "daac09b4740b63aacffb6857aab2708c"),
+    ("task2-cat", "bd163607a118cb3d1e7e697b1f3fabfe"),
     ("top", "93d71a947b97faf74eede21faf2f89c2"),
     ("racket", "5675f2f02314daed7f3b503609cf8043"),
-    ("coin", "3dfb3d66d04e7b60db2e869d05186288"),
+    ("coin", "d2853d24762eb76477b5f85f828c3d4c"),
     ("slope", "d4a442a1bee5f295e93a54308ac624f0"),
-    ("many", "aa76daacf816bfab2f4137fb5d62214c"),
-    ("bounce", "b87477dcf70b7b6ca2efa4efc2d3be57"),
+    ("many", "f497ce1ac531ca7c100043ba0de05c14"),
+    ("bounce", "407bca6fa98dd4a0e99dd6d4804d65ce"),
 ];
 
 #[test]

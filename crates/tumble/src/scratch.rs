@@ -68,7 +68,7 @@ pub struct BodyForces {
     pub gravity: Wrench,
     /// Drag of the medium.
     pub drag: Wrench,
-    /// The normal springs of contacts.
+    /// The normal springs of contacts; after refined steps, all that contacts did, averaged over the step.
     pub spring: Wrench,
     /// The dashpots of contacts, normal and tangential.
     pub dashpot: Wrench,

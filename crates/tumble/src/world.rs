@@ -37,7 +37,7 @@ impl World {
         let Some(hand) = self.pull else {
             return step(&self.model, &mut self.state, &mut self.scratch);
         };
-        // half of the pull before and half after: still of second order
+        // half of the pull before and half after
         let h = 0.5 * self.model.dt;
         self.pulled += stage::pull(&self.model, &mut self.state, &hand, h);
         step(&self.model, &mut self.state, &mut self.scratch)?;
@@ -64,13 +64,14 @@ impl World {
     }
 
     /// Goes on from `state`, as a checkpoint holds it: every step from here on gives the bits that it
-    /// gave when the state was taken.
+    /// gave when the state was taken. A hand lets go, and [`World::pulled`] begins anew.
     ///
     /// # Errors
     /// [`StateError`] when the state is not one of this model; the world then keeps its own.
     pub fn restore(&mut self, state: State) -> Result<(), StateError> {
         state.fits(&self.model)?;
-        self.state = state;
+        (self.state, self.scratch) = (state, Scratch::default());
+        (self.pull, self.pulled) = (None, 0.0);
         Ok(())
     }
 

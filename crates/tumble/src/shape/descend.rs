@@ -10,6 +10,10 @@ use crate::lanes::{LANES, Vec3x8, largest, positive, sum};
 /// Branches that can wait at once: a tree of 2³² particles is no deeper.
 const WAITING: usize = 32;
 
+/// How close to the largest value is close enough. The particles of a flat face that lies on a wall are
+/// equally deep but for rounding, and need not all be looked at.
+const CLOSE: f64 = 1e-4;
+
 /// Sums of a ramp f over some particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct RampSums {
@@ -46,7 +50,7 @@ impl Particles {
                 let mut lanes = LaneSums::zero(simd);
                 let mut waiting = Waiting::new(self.nodes());
                 while let Some((branch, _)) = waiting.next() {
-                    let node = &self.nodes()[branch.node as usize];
+                    let node = self.node(branch);
                     let mut side = node.side(ramp, branch.is_leaf());
                     for ramp in within {
                         side = side.and(node.side(ramp, branch.is_leaf()));
@@ -69,7 +73,7 @@ impl Particles {
         )
     }
 
-    /// The largest value of `ramp` over the particles, or zero where it is nowhere above, up to rounding.
+    /// The largest value of `ramp` over the particles, to a part in ten thousand; zero where it is nowhere above.
     pub(crate) fn largest(&self, level: Level, ramp: &Ramp) -> f64 {
         dispatch!(level, simd => self.largest_in(simd, ramp))
     }
@@ -79,13 +83,14 @@ impl Particles {
         simd.vectorize(
             #[inline(always)]
             || {
-                let values = Spread::over(simd, ramp);
+                let values = LaneRamp::over(simd, ramp);
                 let mut best = 0.0f64;
                 let mut waiting = Waiting::new(self.nodes());
                 while let Some((branch, most)) = waiting.next() {
-                    // a box that ends on its particle may be a rounding above it
+                    // a bound that ends on its particle may be a rounding above it
                     let rounding = 4.0 * f64::EPSILON * (ramp.offset.abs() + best);
-                    if most <= best + rounding {
+                    let enough = best * (1.0 + CLOSE) + rounding;
+                    if most <= enough || self.node(branch).most_by_spread(ramp) <= enough {
                         continue;
                     }
                     match branch.children() {
@@ -119,10 +124,10 @@ impl Particles {
         simd.vectorize(
             #[inline(always)]
             || {
-                let values = Spread::over(simd, ramp);
+                let values = LaneRamp::over(simd, ramp);
                 let mut waiting = Waiting::new(self.nodes());
                 while let Some((branch, _)) = waiting.next() {
-                    let node = &self.nodes()[branch.node as usize];
+                    let node = self.node(branch);
                     match (node.side(ramp, branch.is_leaf()), branch.children()) {
                         (Side::Outside, _) => {}
                         (Side::Cut, Some([a, b])) => waiting.both((a, 0.0), (b, 0.0)),
@@ -145,7 +150,12 @@ impl Particles {
 
     #[inline(always)]
     fn most(&self, branch: Branch, ramp: &Ramp) -> f64 {
-        self.nodes()[branch.node as usize].most(ramp)
+        self.node(branch).most(ramp)
+    }
+
+    #[inline(always)]
+    fn node(&self, branch: Branch) -> &Node {
+        &self.nodes()[branch.node as usize]
     }
 }
 
@@ -219,9 +229,9 @@ impl<S: Simd> LaneSums<S> {
     #[inline(always)]
     fn add<const N: usize>(&mut self, simd: S, group: &Group<S>, ramp: &Ramp, within: &[Ramp; N]) {
         let zero = f64x8::splat(simd, 0.0);
-        let mut value = positive(simd, Spread::over(simd, ramp).real(simd, group));
+        let mut value = positive(simd, LaneRamp::over(simd, ramp).real(simd, group));
         for ramp in within {
-            let counts = Spread::over(simd, ramp).at(group.place).simd_gt(zero);
+            let counts = LaneRamp::over(simd, ramp).at(group.place).simd_gt(zero);
             value = counts.select(value, zero);
         }
         self.sum += value;
@@ -232,12 +242,12 @@ impl<S: Simd> LaneSums<S> {
 }
 
 /// A ramp, the same in each lane.
-struct Spread<S: Simd> {
+struct LaneRamp<S: Simd> {
     offset: f64x8<S>,
     slope: Vec3x8<S>,
 }
 
-impl<S: Simd> Spread<S> {
+impl<S: Simd> LaneRamp<S> {
     #[inline(always)]
     fn over(simd: S, ramp: &Ramp) -> Self {
         Self { offset: f64x8::splat(simd, ramp.offset), slope: Vec3x8::splat(simd, ramp.slope) }

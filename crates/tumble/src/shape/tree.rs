@@ -27,6 +27,7 @@ pub(crate) struct Ramp {
 
 impl Ramp {
     /// Its value at a place.
+    #[inline(always)]
     pub fn at(&self, place: DVec3) -> f64 {
         self.offset - self.slope.dot(place)
     }
@@ -50,7 +51,7 @@ pub(super) struct Node {
 /// Where a node is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
-    /// The ramp is above zero, or on it, all over the node.
+    /// The ramp is above zero all over the node.
     Inside,
     /// The ramp is nowhere above zero in the node.
     Outside,
@@ -118,10 +119,12 @@ impl Node {
     pub fn side(&self, ramp: &Ramp, is_leaf: bool) -> Side {
         let middle = ramp.at(self.centre);
         let reach = ramp.slope.abs().dot(self.half);
-        if middle + reach <= 0.0 {
+        // what rounding could decide, the particles decide
+        let rounding = 4.0 * f64::EPSILON * (ramp.offset.abs() + middle.abs() + reach);
+        if middle + reach < -rounding {
             return Side::Outside;
         }
-        if middle - reach >= 0.0 {
+        if middle - reach > rounding {
             return Side::Inside;
         }
         if is_leaf {
@@ -130,14 +133,20 @@ impl Node {
         let (middle, reach) = (ramp.at(self.mean), self.thickness(ramp.slope));
         if middle + reach <= 0.0 {
             Side::Outside
-        } else if middle - reach >= 0.0 {
+        } else if middle - reach > 0.0 {
             Side::Inside
         } else {
             Side::Cut
         }
     }
 
-    /// The ramp is nowhere in the node above this.
+    /// The ramp is nowhere in the node above this, by its spread; for flat nodes of any orientation close.
+    #[inline(always)]
+    pub fn most_by_spread(&self, ramp: &Ramp) -> f64 {
+        ramp.at(self.mean) + self.thickness(ramp.slope)
+    }
+
+    /// The ramp is nowhere in the node above this, by its box.
     #[inline(always)]
     pub fn most(&self, ramp: &Ramp) -> f64 {
         ramp.at(self.centre) + ramp.slope.abs().dot(self.half)
@@ -147,10 +156,13 @@ impl Node {
     /// farther from their mean than the root of the sum of squares. By this, flat sets of any orientation are thin.
     #[inline(always)]
     fn thickness(&self, slope: DVec3) -> f64 {
+        // the square of a slope may underflow, its direction does not
+        let size = slope.abs().max_element();
+        let slope = slope / size.max(f64::MIN_POSITIVE);
         let [xx, yy, zz, ..] = self.spread;
         // what rounding can hide in a spread
-        let rounding = 64.0 * f64::EPSILON * (xx + yy + zz) * slope.length_squared();
-        (slope.dot(self.spread_times(slope)).max(0.0) + rounding).sqrt()
+        let rounding = 16.0 * f64::EPSILON * (xx + yy + zz) * slope.length_squared();
+        (slope.dot(self.spread_times(slope)).max(0.0) + rounding).sqrt() * size
     }
 }
 
@@ -175,6 +187,8 @@ pub(super) fn build(places: &[DVec3]) -> (Vec<u32>, Vec<Node>) {
 fn grow(sorted: &mut [(DVec3, u32)], nodes: &mut Vec<Node>) -> Node {
     let leaves = sorted.len().div_ceil(LEAF);
     if leaves == 1 {
+        // the same order within the leaf whatever the selection above did
+        sorted.sort_unstable_by_key(|&(_, index)| index);
         let mut places = [DVec3::ZERO; LEAF];
         for (place, (sorted, _)) in places.iter_mut().zip(sorted.iter()) {
             *place = *sorted;

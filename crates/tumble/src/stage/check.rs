@@ -88,9 +88,9 @@ fn too_deep(
 fn too_far(model: &Model, body: &BodyModel, state: &BodyState, limit: f64) -> Option<Problem> {
     // |ω| is at most |L| over the smallest moment, and (a + b)² at most 2 a² + 2 b²: most bodies
     // need no closer look, and no root
-    let (v2, l2) = (state.velocity.length_squared(), state.angular_momentum.length_squared());
-    let rim = body.inverse_moments.max_element() * body.shape.radius();
-    if 2.0 * model.dt * model.dt * (v2 + rim * rim * l2) <= limit * limit {
+    let rim = state.angular_momentum * (body.inverse_moments.max_element() * body.shape.radius());
+    let (v, rim) = (state.velocity * model.dt, rim * model.dt);
+    if 2.0 * (v.length_squared() + rim.length_squared()) <= limit * limit {
         return None;
     }
     let way = |omega: f64| model.dt * (state.velocity.length() + omega * body.shape.radius());

@@ -26,6 +26,9 @@ pub struct Pull {
 ///
 /// k = M λ² and c = 2 M λ: critical damping at the rate λ, whatever the body weighs. A particle at the end of an
 /// arm resists with less than M, at least with μ, 1/μ = 1/M + r²/I, so that c h is kept below a part of μ.
+///
+/// # Panics
+/// When there is no such body or particle; [`World::pull`](crate::World::pull) checks that.
 pub fn pull(model: &Model, state: &mut State, pull: &Pull, h: f64) -> f64 {
     let (body, state) = (&model.bodies[pull.body], &mut state.bodies[pull.body]);
     let wrench = spring(body, state, pull, model.dt);

@@ -20,6 +20,7 @@ pub fn reach(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
         let far = |wall: &crate::WallPlane| wall.depth(body_state.position) < -reach;
         // who is far feels nothing
         scratch.forces[index].clear_contact();
+        scratch.springs[index].clear();
         scratch.near[index] = !(state.springs[index].is_empty() && model.walls.iter().all(far));
     }
 }

@@ -125,6 +125,10 @@ impl Mover<'_> {
                 size *= 2;
             }
         }
+        // what contact did over the whole step, on the average
+        let (impulse, h) = (self.impulse, self.model.dt);
+        self.forces.clear_contact();
+        self.forces.spring = Wrench { force: impulse.force / h, torque: impulse.torque / h };
         self.forces.max_depth = lost.max_depth;
         lost
     }

@@ -53,7 +53,7 @@ impl Touching {
         if !place.body.has_friction && old.is_empty() {
             return;
         }
-        let mut springs = Springs { place, model, old, released: 0.0 };
+        let mut springs = OldSprings { place, model, old, released: 0.0 };
         let particles = place.body.shape.particles();
         for (index, (wall, law)) in model.walls.iter().zip(&place.body.contacts).enumerate() {
             let near = NearWall::of(wall, place).filter(|_| law.friction > 0.0);
@@ -108,14 +108,14 @@ fn set(columns: &mut [[f64; LANES]; 3], lane: usize, v: DVec3) {
 }
 
 /// The springs of before, sorted by wall and slot, those already met taken off the front.
-struct Springs<'a> {
+struct OldSprings<'a> {
     place: &'a Placed<'a>,
     model: &'a Model,
     old: &'a [FrictionSpring],
     released: f64,
 }
 
-impl Springs<'_> {
+impl OldSprings<'_> {
     /// Contacts with one wall, with the springs that they had.
     #[inline(always)]
     fn load<S: Simd>(

@@ -10,7 +10,9 @@ pub(super) struct Springs {
     /// Of all these walls.
     pub all: Wrench,
     /// Of those of them that have a dashpot too.
-    pub damped: Wrench,
+    damped: Wrench,
+    /// Whether there are such, with particles behind them.
+    is_damped: bool,
     /// The deepest particle (m).
     pub max_depth: f64,
 }
@@ -21,13 +23,14 @@ impl Springs {
         let mut springs = Self::default();
         for (wall, law) in near_walls(model, place) {
             let depths = wall.depths(place);
-            if depths.squares == 0.0 {
+            if depths.sum <= 0.0 {
                 continue;
             }
             let push = along(place, &wall, law.stiffness, &depths);
             springs.all += push;
             if law.damping > 0.0 {
                 springs.damped += push;
+                springs.is_damped = true;
             }
             let search = || place.body.shape.particles().largest(place.level, &wall.depth);
             let deepest = depths.largest.unwrap_or_else(search);
@@ -39,7 +42,7 @@ impl Springs {
     /// What the dashpots add with the velocities of `place`: the sums of k δ − c_n u·n where that is above
     /// zero, less the springs.
     pub fn dashpots(&self, model: &Model, place: &Placed) -> Wrench {
-        if self.damped == Wrench::default() {
+        if !self.is_damped {
             return Wrench::default();
         }
         let mut both = Wrench::default();
