@@ -51,9 +51,9 @@ impl Particles {
                 let mut waiting = Waiting::new(self.nodes());
                 while let Some((branch, _)) = waiting.next() {
                     let node = self.node(branch);
-                    let mut side = node.side(ramp, branch.is_leaf());
+                    let mut side = node.side(ramp);
                     for ramp in within {
-                        side = side.and(node.side(ramp, branch.is_leaf()));
+                        side = side.and(node.side(ramp));
                     }
                     match side {
                         Side::Outside => {}
@@ -128,7 +128,7 @@ impl Particles {
                 let mut waiting = Waiting::new(self.nodes());
                 while let Some((branch, _)) = waiting.next() {
                     let node = self.node(branch);
-                    match (node.side(ramp, branch.is_leaf()), branch.children()) {
+                    match (node.side(ramp), branch.children()) {
                         (Side::Outside, _) => {}
                         (Side::Cut, Some([a, b])) => waiting.both((a, 0.0), (b, 0.0)),
                         _ => {
