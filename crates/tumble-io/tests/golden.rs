@@ -12,14 +12,14 @@ use tumble_io::scene::{BUILTIN, LoadOptions, load_builtin};
 const GOLDEN: &[(&str, &str)] = &[
     ("task1", "89784919b55608302bf0f2ba8e450a37"),
     ("task2", "166c845789beb0781e3d64d734f8506f"),
-    ("task1-cat", "ec966bd15a41b8f7d71eac7857e42167"),
+    ("task1-cat", "daac09b4740b63aacffb6857aab2708c"),
     ("task2-cat", "bd163607a118cb3d1e7e697b1f3fabfe"),
     ("top", "93d71a947b97faf74eede21faf2f89c2"),
     ("racket", "5675f2f02314daed7f3b503609cf8043"),
     ("coin", "d2853d24762eb76477b5f85f828c3d4c"),
     ("slope", "d4a442a1bee5f295e93a54308ac624f0"),
     ("many", "f497ce1ac531ca7c100043ba0de05c14"),
-    ("bounce", "adcaa0b02d835793f3eb9df7ecf1707f"),
+    ("bounce", "407bca6fa98dd4a0e99dd6d4804d65ce"),
 ];
 
 #[test]

@@ -91,9 +91,7 @@ impl<'a> Recording<'a> {
     /// One more frame.
     pub fn frame(&mut self, world: &World) -> Result<(), RunError> {
         let row = self.row(world)?;
-        let mut bodies = self.scribe.room();
-        bodies.clear();
-        bodies.extend(BodyFrame::all(world));
+        let bodies = BodyFrame::all(world).collect();
         self.scribe.write(Moment { step: world.state().step, row, bodies })
     }
 

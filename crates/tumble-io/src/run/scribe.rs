@@ -14,8 +14,10 @@ use crate::page::{BodyFrame, Film};
 use crate::picture::{Frame, Pose};
 use crate::plot::EnergyRow;
 
-/// Frames that may wait to be written. Where the disk cannot keep up, the steps wait after all.
-const WAITING: usize = 64;
+/// Frames are handed over in batches of about so many bodies: waking a thread costs more than a frame of one body.
+const BATCH: usize = 256;
+/// Batches that may wait to be written. Where the disk cannot keep up, the steps wait after all.
+const WAITING: usize = 8;
 
 /// The files that grow.
 pub(super) struct Files {
@@ -38,7 +40,7 @@ pub(super) struct Moment {
 }
 
 enum Order {
-    Write(Moment),
+    Write(Vec<Moment>),
     /// Everything so far is to reach the disk, and then to be answered.
     Settle(SyncSender<()>),
 }
@@ -47,8 +49,7 @@ enum Order {
 pub(super) struct Scribe {
     folder: RunFolder,
     orders: Option<SyncSender<Order>>,
-    /// Bodies of frames that have been written, for their room.
-    spare: Receiver<Vec<BodyFrame>>,
+    batch: Vec<Moment>,
     thread: Option<JoinHandle<Result<Memory, RunError>>>,
 }
 
@@ -56,15 +57,9 @@ impl Scribe {
     /// Starts the thread. `names` are those of the bodies.
     pub fn start(folder: &RunFolder, files: Files, memory: Memory, names: Vec<String>) -> Self {
         let (orders, received) = sync_channel(WAITING);
-        let (used, spare) = sync_channel(WAITING);
-        let desk = Desk { folder: folder.clone(), files, memory, names, used };
+        let desk = Desk { folder: folder.clone(), files, memory, names };
         let thread = Some(std::thread::spawn(move || desk.work(&received)));
-        Self { folder: folder.clone(), orders: Some(orders), spare, thread }
-    }
-
-    /// Room for the bodies of a frame.
-    pub fn room(&self) -> Vec<BodyFrame> {
-        self.spare.try_recv().unwrap_or_default()
+        Self { folder: folder.clone(), orders: Some(orders), batch: Vec::new(), thread }
     }
 
     /// Hands over a frame.
@@ -72,7 +67,14 @@ impl Scribe {
     /// # Errors
     /// That of an earlier frame, which could not be written.
     pub fn write(&mut self, moment: Moment) -> Result<(), RunError> {
-        self.order(Order::Write(moment))
+        let bodies = moment.bodies.len().max(1);
+        self.batch.push(moment);
+        if self.batch.len() * bodies >= BATCH { self.hand_over() } else { Ok(()) }
+    }
+
+    fn hand_over(&mut self) -> Result<(), RunError> {
+        let batch = std::mem::take(&mut self.batch);
+        if batch.is_empty() { Ok(()) } else { self.order(Order::Write(batch)) }
     }
 
     /// Waits until everything is on the disk.
@@ -80,6 +82,7 @@ impl Scribe {
     /// # Errors
     /// [`RunError::Write`] when it cannot get there.
     pub fn settle(&mut self) -> Result<(), RunError> {
+        self.hand_over()?;
         let (done, answer) = sync_channel(1);
         self.order(Order::Settle(done))?;
         answer.recv().map_err(|_| self.failure())
@@ -90,6 +93,7 @@ impl Scribe {
     /// # Errors
     /// [`RunError::Write`] when a row could not be written.
     pub fn finish(mut self) -> Result<Memory, RunError> {
+        self.hand_over()?;
         self.join()
     }
 
@@ -122,7 +126,7 @@ impl Drop for Scribe {
     /// What was handed over is written, however the run ends.
     fn drop(&mut self) {
         // an error was told before, or the run ends with one of its own
-        let _ = self.join();
+        let _ = self.hand_over().and_then(|()| self.join().map(drop));
     }
 }
 
@@ -132,14 +136,15 @@ struct Desk {
     files: Files,
     memory: Memory,
     names: Vec<String>,
-    used: SyncSender<Vec<BodyFrame>>,
 }
 
 impl Desk {
     fn work(mut self, orders: &Receiver<Order>) -> Result<Memory, RunError> {
         while let Ok(order) = orders.recv() {
             match order {
-                Order::Write(moment) => self.write(moment)?,
+                Order::Write(moments) => {
+                    moments.into_iter().try_for_each(|moment| self.write(moment))?;
+                }
                 Order::Settle(done) => {
                     self.settle()?;
                     // who asked may have gone
@@ -163,8 +168,7 @@ impl Desk {
             })
             .map_err(|(name, error)| RunError::Write(self.folder.file(name), error))?;
         self.memory.recorder.record_frame(still(row.time, &bodies), row);
-        self.memory.film.record(step, &row, bodies.iter().copied());
-        let _ = self.used.try_send(bodies);
+        self.memory.film.record(step, &row, bodies.into_iter());
         Ok(())
     }
 

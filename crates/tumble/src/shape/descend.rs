@@ -51,9 +51,9 @@ impl Particles {
                 let mut waiting = Waiting::new(self.nodes());
                 while let Some((branch, _)) = waiting.next() {
                     let node = self.node(branch);
-                    let mut side = node.side(ramp);
+                    let mut side = node.side(ramp, branch.is_leaf());
                     for ramp in within {
-                        side = side.and(node.side(ramp));
+                        side = side.and(node.side(ramp, branch.is_leaf()));
                     }
                     match side {
                         Side::Outside => {}
@@ -128,7 +128,7 @@ impl Particles {
                 let mut waiting = Waiting::new(self.nodes());
                 while let Some((branch, _)) = waiting.next() {
                     let node = self.node(branch);
-                    match (node.side(ramp), branch.children()) {
+                    match (node.side(ramp, branch.is_leaf()), branch.children()) {
                         (Side::Outside, _) => {}
                         (Side::Cut, Some([a, b])) => waiting.both((a, 0.0), (b, 0.0)),
                         _ => {

@@ -131,8 +131,8 @@ fn a_tilted_flat_face_is_not_opened_to_its_particles() {
     let slope = DVec3::ONE.normalize();
     let particles = Particles::new(places.iter().copied());
     let root = &particles.nodes()[0];
-    assert_eq!(root.side(&Ramp { offset: 0.3 + 1e-4, slope }), Side::Inside);
-    assert_eq!(root.side(&Ramp { offset: 0.3 - 1e-4, slope }), Side::Outside);
+    assert_eq!(root.side(&Ramp { offset: 0.3 + 1e-4, slope }, false), Side::Inside);
+    assert_eq!(root.side(&Ramp { offset: 0.3 - 1e-4, slope }, false), Side::Outside);
 }
 
 #[test]

@@ -13,10 +13,6 @@ use crate::lanes::LANES;
 
 /// Groups of [`LANES`] slots in a leaf.
 pub(super) const GROUPS: usize = 4;
-/// How much thicker than its spread an ellipsoid is, so that flat ones can be inverted.
-const FLAT: f64 = 1e-5;
-/// Nodes of at most so many leaves have an ellipsoid that fits.
-const FITTED: usize = 128;
 /// Particles in a leaf; the last may have fewer.
 const LEAF: usize = GROUPS * LANES;
 
@@ -48,11 +44,8 @@ pub(super) struct Node {
     pub count: f64,
     /// Their mean r̄ (m).
     pub mean: DVec3,
-    /// Their spread S = Σ (r − r̄)(r − r̄)ᵀ (m²), as xx, yy, zz, xy, yz, zx.
+    /// Their spread Σ (r − r̄)(r − r̄)ᵀ (m²), as xx, yy, zz, xy, yz, zx.
     spread: [f64; 6],
-    /// How large an ellipsoid of the shape of S, made a little thicker, holds them: (r − r̄)ᵀ (S + t tr S)⁻¹ (r − r̄) is at
-    /// most this for each of them, with t = [`FLAT`], and at most 1 for any set.
-    fill: f64,
 }
 
 /// Where a node is.
@@ -90,7 +83,6 @@ impl Node {
         let mean = sum / count;
         let spread = places.iter().map(|&p| outer(p - mean, p - mean)).sum();
         Self { count, mean, spread: six(spread), ..Self::boxed(low, high) }
-            .fitted(places.iter().copied())
     }
 
     /// Both together; the moments by the parallel axis theorem.
@@ -105,38 +97,10 @@ impl Node {
         Self { count, mean, spread, ..Self::boxed(low, high) }
     }
 
-    /// With the smallest ellipsoid of its shape that holds all its particles.
-    fn fitted(self, places: impl Iterator<Item = DVec3>) -> Self {
-        let [xx, yy, zz, xy, yz, zx] = self.spread;
-        let flat = DMat3::from_diagonal(DVec3::splat(FLAT * self.size()));
-        let spread = DMat3::from_cols(
-            DVec3::new(xx, xy, zx),
-            DVec3::new(xy, yy, yz),
-            DVec3::new(zx, yz, zz),
-        ) + flat;
-        let inverse = spread.inverse();
-        let fill = places.fold(0.0, |fill: f64, place| {
-            let way = place - self.mean;
-            // max would pass over NaN
-            let at = way.dot(inverse * way);
-            if at <= fill { fill } else { at }
-        });
-        // the inverse of a line's spread has lost all but some digits; one that is none leaves what holds for any set
-        let fill = fill * (1.0 + 1e-3);
-        Self { fill: if fill < 1.0 { fill } else { 1.0 }, ..self }
-    }
-
-    /// The trace of the spread (m²).
-    #[inline(always)]
-    fn size(&self) -> f64 {
-        let [xx, yy, zz, ..] = self.spread;
-        xx + yy + zz
-    }
-
     fn boxed(low: DVec3, high: DVec3) -> Self {
         let centre = 0.5 * (low + high);
         let half = (high - centre).max(centre - low);
-        Self { centre, half, count: 0.0, mean: centre, spread: [0.0; 6], fill: 1.0 }
+        Self { centre, half, count: 0.0, mean: centre, spread: [0.0; 6] }
     }
 
     /// The spread times a vector.
@@ -150,9 +114,9 @@ impl Node {
         )
     }
 
-    /// On which side of the zero of a ramp the node is, by its box, and where that is cut by its ellipsoid.
+    /// On which side of the zero of a ramp the node is. Leaves are as soon opened as looked at closely.
     #[inline(always)]
-    pub fn side(&self, ramp: &Ramp) -> Side {
+    pub fn side(&self, ramp: &Ramp, is_leaf: bool) -> Side {
         let middle = ramp.at(self.centre);
         let reach = ramp.slope.abs().dot(self.half);
         // what rounding could decide, the particles decide
@@ -162,6 +126,9 @@ impl Node {
         }
         if middle - reach > rounding {
             return Side::Inside;
+        }
+        if is_leaf {
+            return Side::Cut;
         }
         let (middle, reach) = (ramp.at(self.mean), self.thickness(ramp.slope));
         if middle + reach < -rounding {
@@ -185,19 +152,17 @@ impl Node {
         ramp.at(self.centre) + ramp.slope.abs().dot(self.half)
     }
 
-    /// How much a function of this slope can differ over the node from its value at the mean: half the width of the
-    /// ellipsoid. By this, flat sets of any orientation are thin.
+    /// How much a function of this slope can differ over the node from its value at the mean: no value of a set is
+    /// farther from their mean than the root of the sum of squares. By this, flat sets of any orientation are thin.
     #[inline(always)]
     fn thickness(&self, slope: DVec3) -> f64 {
         // the square of a slope may underflow, its direction does not
         let size = slope.abs().max_element();
         let slope = slope / size.max(f64::MIN_POSITIVE);
-        let squares = slope.dot(self.spread_times(slope)).max(0.0);
-        let all = self.size() * slope.length_squared();
-        // any set, with what rounding can hide; and this one
-        let any = squares + 16.0 * f64::EPSILON * all;
-        let fitted = self.fill * (squares + FLAT * all);
-        any.min(fitted).sqrt() * size
+        let [xx, yy, zz, ..] = self.spread;
+        // what rounding can hide in a spread
+        let rounding = 16.0 * f64::EPSILON * (xx + yy + zz) * slope.length_squared();
+        (slope.dot(self.spread_times(slope)).max(0.0) + rounding).sqrt() * size
     }
 }
 
@@ -242,11 +207,9 @@ fn grow(sorted: &mut [(DVec3, u32)], nodes: &mut Vec<Node>) -> Node {
     let here = nodes.len();
     nodes.push(Node::boxed(low, high));
     let (left, right) = sorted.split_at_mut(middle);
-    let (left, right) = (grow(left, nodes), grow(right, nodes));
-    let node = Node::join(&left, &right);
-    // higher up it would cost time and gain little
-    nodes[here] =
-        if leaves <= FITTED { node.fitted(sorted.iter().map(|(place, _)| *place)) } else { node };
+    let left = grow(left, nodes);
+    let right = grow(right, nodes);
+    nodes[here] = Node::join(&left, &right);
     nodes[here]
 }
 
