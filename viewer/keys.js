@@ -95,6 +95,6 @@ export function helpDialog(dialog, app) {
   dialog.replaceChildren(
     element('div', { className: 'top' }, element('h2', { id: 'help-title' }, 'Keys and mouse'), close),
     element('div', { className: 'columns' }, element('dl', {}, ...rows(mouse)), element('dl', {}, ...rows(keys))),
-    element('p', { className: 'muted' }, 'Arrows: forces share one scale, each other quantity has its own; point at a row in the panel to read it. An arrow that would leave the picture is cut and says so. The energy plot stacks where the energy is and where it went; the line on top is their sum, the dotted line its value at the start. Gravitational energy is counted from its lowest value.'),
+    element('p', { className: 'muted' }, 'Arrows: forces share one scale, each other quantity has its own; point at a row in the panel to read it. An arrow that would leave the picture is cut and says so. The energy plot stacks where the energy is and where it went; the line on top is their sum, the dotted line its value at the start. The numbers are those of energy.csv: gravitational energy is zero at the origin. Only the plot counts it from another zero, and says from which.'),
   );
 }
