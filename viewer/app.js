@@ -60,8 +60,8 @@ export class App {
     this.plot = new Plot(byId('plot'), this.player);
     this.timeline = new Timeline(byId('timeline'), this.player, head, this.timelineActions());
     helpDialog(byId('help'), this);
+    this.ownView = false;
     this.layout();
-    this.whole();
     this.changed();
   }
 

@@ -71,7 +71,10 @@ pub fn load(scene: &Scene, text: String, sets: Vec<String>) -> Result<Loaded, St
     load_text(&scene.name, source, Path::new("."), &options)
         // a page has no flags: the one to insist with belongs to the command that serves it
         .map_err(|error| {
-            error.messages().join("\n").replace("insist with --force", "restart tumble view with --force")
+            error
+                .messages()
+                .join("\n")
+                .replace("insist with --force", "restart tumble view with --force")
         })
 }
 
