@@ -307,6 +307,7 @@ async function live(browser) {
   await page.click('#save');
   const saved = await saving;
   check('saving hands over a file', saved.suggestedFilename() === 'task2.toml');
+  check('and says of which moment', /saved as of t = .* s to task2\.toml/.test(await page.locator('#notice').innerText()));
   await page.selectOption('#speed', '0.25');
   await page.waitForTimeout(100);
   check('speed is sent', heard('speed').at(-1)?.value === 0.25);
@@ -314,6 +315,7 @@ async function live(browser) {
   const { port } = server;
   await server.close();
   await until('a broken link is told', page, () => document.querySelector('#link').textContent.startsWith('No connection'));
+  check('and in the title', (await page.locator('#facts').innerText()).includes('not connected'));
   await server.open(port);
   await until('and mended', page, () => document.querySelector('#link').textContent === 'Connected');
   await page.context().close();

@@ -6,7 +6,7 @@ import { Overlays } from './overlays.js';
 import { Panel } from './panel.js';
 import { Player } from './player.js';
 import { Plot } from './plot.js';
-import { Scene, extent, support } from './scene.js';
+import { Scene, everything, extent, keepInSight, support } from './scene.js';
 import { THEMES } from './palette.js';
 import { Table } from './table.js';
 import { Timeline } from './timeline.js';
@@ -27,6 +27,7 @@ export class App {
     this.following = null;
     this.hovered = null;
     this.link = null;
+    this.connected = true;
     this.grab = null;
     this.canvas = byId('canvas');
     this.support = support();
@@ -59,8 +60,8 @@ export class App {
     this.plot = new Plot(byId('plot'), this.player);
     this.timeline = new Timeline(byId('timeline'), this.player, head, this.timelineActions());
     helpDialog(byId('help'), this);
+    this.ownView = false;
     this.layout();
-    this.whole();
     this.changed();
   }
 
@@ -81,13 +82,32 @@ export class App {
     const many = bodies.length === 1 ? 'one body' : `${count(bodies.length)} bodies`;
     const { frames_recorded: all, frame_count: kept } = this.head;
     const thinned = all > kept ? `, ${count(kept)} of ${count(all)} frames` : '';
-    byId('facts').textContent = live ? `${many}, running now` : `${many}, ${quantity(this.film.end || duration, 's')}${thinned}`;
+    this.facts = live ? `${many}, ` : `${many}, ${quantity(this.film.end || duration, 's')}${thinned}`;
+    this.writeFacts();
     document.title = `${name} – tumble`;
+  }
+
+  // of a live run: whether it goes on
+  writeFacts() {
+    const { live, duration } = this.head;
+    let text = this.facts;
+    if (live && !this.connected) text += 'not connected';
+    else if (live) {
+      text += this.link?.status.playing ? 'running now' : 'paused';
+      if (this.film.end > duration + 1e-9) text += `, past its duration of ${quantity(duration, 's')}`;
+    }
+    if (byId('facts').textContent !== text) byId('facts').textContent = text;
+  }
+
+  setConnected(on) {
+    this.connected = on;
+    if (this.head) this.writeFacts();
   }
 
   startPicture() {
     const { head, film } = this;
     this.bounds = extent(head, film);
+    this.sight = this.bounds;
     this.camera = new Camera(head.up);
     const slope = head.walls.find(({ normal }) => dot(normal, head.up) > 0.1 && dot(normal, head.up) < 0.995);
     if (slope) this.camera.faceSlope(slope.normal);
@@ -111,7 +131,7 @@ export class App {
       hover: (at) => this.hover(at),
       click: (at) => this.click(at),
       down: (at, event) => this.grabAt(at, event),
-      drag: (at) => this.grab?.move(this.rayAt(at), this.view().back),
+      drag: (at) => this.grab?.move(this.rayAt(at)),
       up: () => this.grab?.end(),
     });
     this.isHeld = pointers.isHeld;
@@ -150,7 +170,7 @@ export class App {
     this.camera.margin = { left: 0, right: covered, top: stage.width < 760 ? 40 : 0, bottom: Math.max(stage.bottom - below, 0) };
     this.camera.size = [stage.width, stage.height];
     this.scene?.resize(stage.width, stage.height);
-    if (!this.ownView) this.camera.fit(this.bounds.centre, this.bounds.radius);
+    if (!this.ownView) this.camera.fit(this.sight.centre, this.sight.radius);
     this.changed();
   }
 
@@ -203,7 +223,8 @@ export class App {
   show() {
     const { moment, player, film } = this;
     moment.set(film, player.time);
-    if (this.following !== null && moment.frame) {
+    // the hand and a camera that follows what it pulls would chase each other
+    if (this.following !== null && moment.frame && !this.grab?.held) {
       const place = moment.position(this.following);
       if (isFiniteVector(place)) this.camera.target = place;
     }
@@ -305,21 +326,39 @@ export class App {
     // of a crowd a look now and then will do
     if (this.head.bodies.length < 200 || film.length % 10 === 1) this.overlays.learn(film.frames.at(-1), this.moment);
     this.learnForces();
-    if (film.length === 1 && !this.ownView && !this.head.box) this.seeAround();
+    if (film.length === 1 && !this.ownView) this.seeAround();
+    else if (!this.grab?.held) this.lookAfter(film.frames.at(-1));
+    this.writeFacts();
     this.dirty = true;
     this.request();
   }
 
-  // without a box the view is fitted to where the bodies are at the start
+  // the view of the start, fitted to where the bodies are
   seeAround() {
     this.bounds = extent(this.head, this.film);
+    this.sight = this.bounds;
     this.scene?.setExtent(this.bounds);
     this.overlays.size = this.bounds.radius;
     this.camera.fit(this.bounds.centre, this.bounds.radius);
   }
 
+  // floor, light and, until somebody moves it, the camera go along with the bodies
+  lookAfter(frame) {
+    const bounds = keepInSight(this.head, frame, this.bounds);
+    if (bounds !== this.bounds) {
+      this.bounds = bounds;
+      this.scene?.setExtent(bounds);
+    }
+    if (this.ownView || this.following !== null || !this.player.follow) return;
+    const sight = keepInSight(this.head, frame, this.sight);
+    if (sight === this.sight) return;
+    this.sight = sight;
+    this.camera.fit(sight.centre, sight.radius);
+  }
+
   liveStatus({ speed }) {
     this.timeline.showSpeed(speed);
+    this.writeFacts();
     this.stale = true;
     this.dirty = true;
     this.request();
@@ -427,7 +466,9 @@ export class App {
   whole() {
     this.following = null;
     this.ownView = false;
-    this.camera.fit(this.bounds.centre, this.bounds.radius);
+    const { frame } = this.moment;
+    this.sight = frame ? everything(this.head, this.film, frame, this.bounds, this.shows.paths) : this.bounds;
+    this.camera.fit(this.sight.centre, this.sight.radius);
     this.changed();
   }
 

@@ -57,6 +57,8 @@ export class Film {
   constructor(bodyCount) {
     this.bodyCount = bodyCount;
     this.frames = [];
+    // where it began, though a live film may have dropped it since
+    this.first = null;
     // a live run goes on for ever: keep what fits into some tens of megabytes
     this.most = Math.max(64, Math.min(20000, Math.floor(4e7 / frameSize(bodyCount))));
     this.dropped = 0;
@@ -69,6 +71,7 @@ export class Film {
     for (let offset = 0; offset + size <= buffer.byteLength; offset += size) {
       film.frames.push(decodeFrame(buffer, offset, bodyCount));
     }
+    film.first = film.frames[0] ?? null;
     return film;
   }
 
@@ -91,6 +94,7 @@ export class Film {
     if (this.length && frame.time < this.end) this.clear();
     // the same moment once more (a pause): the newer one counts
     if (this.length && frame.time === this.end) this.frames.pop();
+    if (!this.length) this.first = frame;
     this.frames.push(frame);
     if (this.length > this.most) {
       const count = this.most >> 2;

@@ -29,7 +29,7 @@ export const quantity = (x, unit, digits = 3) => `${number(x, digits)}\u202f${un
 
 // as many places as make neighbouring frames differ
 export function time(t, interval) {
-  const places = Math.min(Math.max(Math.ceil(-Math.log10(Math.max(interval, 1e-9))), 1), 6);
+  const places = Math.min(Math.max(Math.ceil(-Math.log10(Math.max(interval, 1e-9)) - 1e-9), 1), 9);
   return t.toFixed(places).replace('-', '−');
 }
 

@@ -14,14 +14,15 @@ export class Grab {
     const hit = moment.frame ? pickBody(ray, head, moment) : null;
     if (!hit) return false;
     const { particle, place } = nearestParticle(head, moment, hit.body, hit.point);
-    this.held = { body: hit.body, particle, target: place, plane: place };
+    // the plane stays as it is, however the view moves on
+    this.held = { body: hit.body, particle, target: place, plane: place, back };
     this.send({ type: 'grab', body: hit.body, particle, target: place });
     return true;
   }
 
-  move(ray, back) {
+  move(ray) {
     if (!this.held) return;
-    this.held.target = onPlane(ray, this.held.plane, back);
+    this.held.target = onPlane(ray, this.held.plane, this.held.back);
     // as often as the screen shows it, not as often as the mouse speaks
     if (this.waiting) return;
     this.waiting = true;

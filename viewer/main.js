@@ -55,6 +55,7 @@ function startLive(app) {
   const hears = {
     link: (state, seconds) => {
       document.body.dataset.link = state;
+      app.setConnected(state === 'open');
       if (controls) controls.link(state, seconds);
       else if (state === 'closed') fail(`No connection to the simulation yet; trying again in ${seconds} s.`);
       else if (state === 'connecting') fail('Connecting to the simulation …');
@@ -70,7 +71,7 @@ function startLive(app) {
         controls.link('open', 0);
       }
       raw = head;
-      controls.parameters(head.parameters ?? []);
+      controls.parameters(head.parameters ?? [], head.bodies);
       if (first) begin(app);
     },
     frame: (buffer) => raw && app.liveFrame(buffer),
@@ -79,10 +80,17 @@ function startLive(app) {
       if (raw) app.liveStatus(status);
     },
     saved: (toml) => {
-      download(`${raw?.name ?? 'scene'}.toml`, toml);
-      notice('The scene was saved to a file.');
+      const name = `${raw?.name ?? 'scene'}.toml`;
+      download(name, toml);
+      // the newest state, whatever moment is shown
+      const time = toml.match(/^#.* at t = (\S+) s\.$/m)?.[1];
+      const at = time === undefined ? app.film.end : Number(time);
+      notice(`saved as of t = ${Number(at.toPrecision(9))} s to ${name}`);
     },
-    refused: (why) => notice(`Not done: ${why}`),
+    refused: (why) => {
+      notice(`Not done: ${why}`);
+      if (raw) controls?.settle(raw.parameters ?? [], raw.bodies);
+    },
   };
   const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
   let link = { send: () => false, status: { playing: false } };

@@ -8,11 +8,11 @@ export function rgb(hex) {
 // the columns of the ledger, in the order of a frame
 export const LEDGER = [
   { name: 'kinetic', label: 'Kinetic', colour: '#0072b2' },
-  { name: 'gravitational', label: 'Gravitational', note: 'counted from its lowest value', colour: '#e69f00' },
-  { name: 'elastic', label: 'In contact springs', colour: '#009e73' },
-  { name: 'drag', label: 'Lost to drag', colour: '#56b4e9' },
-  { name: 'dashpot', label: 'Lost to dashpots', colour: '#cc79a7' },
-  { name: 'slip', label: 'Lost to slip', colour: '#d55e00' },
+  { name: 'gravitational', label: 'Gravitational', note: 'zero at the origin, as in energy.csv', colour: '#e69f00' },
+  { name: 'elastic', label: 'Elastic (contact springs)', colour: '#009e73' },
+  { name: 'drag', label: 'Drag', note: 'lost to drag', colour: '#56b4e9' },
+  { name: 'dashpot', label: 'Dashpot', note: 'lost to dashpots', colour: '#cc79a7' },
+  { name: 'slip', label: 'Slip', note: 'lost to slip', colour: '#d55e00' },
 ];
 
 // calm colours for bodies: between those of the palette and the paper

@@ -2,7 +2,7 @@
 
 import { AT } from './data.js';
 import { button, element } from './dom.js';
-import { count, quantity, vector } from './format.js';
+import { count, number, quantity, vector } from './format.js';
 import { length } from './math.js';
 import { QUANTITIES } from './overlays.js';
 
@@ -56,7 +56,7 @@ export class Panel {
       this.boxes.set(key, { box, isOn: () => overlays.shown.has(key) });
       const value = element('span', { className: 'value' });
       this.values.set(key, value);
-      return element('label', { className: 'check arrow', title: `${label} (${index + 1})`, 'data-key': key }, box, element('i', { className: 'stroke' }), element('span', {}, label, ' ', element('var', {}, symbol)), value);
+      return element('label', { className: 'check arrow', title: `${label} (${index + 1})`, 'data-key': key }, box, element('i', { className: 'stroke' }), element('span', {}, label, ' ', element('var', {}, symbol)), value, element('kbd', {}, String(index + 1)));
     });
     const ellipsoid = this.check('ellipsoid', 'Inertia ellipsoid', 'I', () => overlays.ellipsoid, (on) => {
       overlays.ellipsoid = on;
@@ -83,9 +83,14 @@ export class Panel {
       ['Gravity', quantity(length(head.gravity), 'm/s²')],
       ['Particles', count(head.bodies.reduce((n, b) => n + head.shapes[b.shape].particle_count, 0))],
     ];
+    const tolerance = head.energy_tolerance ?? head.parameters?.find(({ key }) => key === 'energy_tolerance')?.value;
+    if (tolerance) rows.splice(2, 0, ['Energy tolerance', number(tolerance)]);
     if (!head.live) rows.push(['Frames', thinned(head, film)]);
     const list = rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]);
-    return this.section('about', 'About this run', false, element('dl', {}, ...list), element('p', { className: 'muted' }, `tumble ${head.version}`));
+    const section = this.section('about', 'About this run', false, element('dl', {}, ...list), element('p', { className: 'muted' }, `tumble ${head.version}`));
+    // the last section opens below the edge of the panel
+    section.addEventListener('toggle', () => section.open && section.scrollIntoView({ block: 'nearest' }));
+    return section;
   }
 
   // boxes and captions follow what keys did

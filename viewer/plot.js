@@ -7,6 +7,7 @@ import { LEDGER } from './palette.js';
 const GRAVITATIONAL = 1;
 const TOTAL = 6;
 const RESIDUAL = 7;
+const WORK = 8;
 const LEFT = 58;
 const RIGHT = 10;
 const TOP = 8;
@@ -85,9 +86,26 @@ export class Plot {
     this.cursor.style.transform = `translateX(${this.xOf(this.player.time)}px)`;
   }
 
-  // the heights of all bands of one frame, from below
+  // the heights of all bands of one frame
   bands(frame) {
-    return LEDGER.map((_, k) => frame.ledger[k] - (k === GRAVITATIONAL ? this.lowest : 0));
+    return LEDGER.map((_, k) => frame.ledger[k] - (k === GRAVITATIONAL ? this.zero : 0));
+  }
+
+  // Where the plot counts gravitational energy from: its lowest value in a run that is over; in a live one,
+  // whose lowest nobody knows yet, its value at the start, so that nothing moves while time goes on.
+  findZero() {
+    const { film, live } = this.player;
+    if (live) return film.first.ledger[GRAVITATIONAL];
+    return film.frames.reduce((low, f) => Math.min(low, f.ledger[GRAVITATIONAL]), Infinity);
+  }
+
+  // What the hand has added since the start, by pulling and by changed numbers (J): the server leaves it out
+  // of the residual. Nothing, where it is no more than rounding.
+  work(frame) {
+    const start = ({ ledger }) => ledger[TOTAL] - ledger[RESIDUAL];
+    const work = start(frame) - start(this.player.film.first);
+    const size = frame.ledger.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
+    return Math.abs(work) > 1e-9 * size ? work : 0;
   }
 
   paint() {
@@ -97,38 +115,64 @@ export class Plot {
     this.canvas.height = Math.round(this.height * ratio);
     const pen = this.canvas.getContext('2d');
     pen.scale(ratio, ratio);
-    this.lowest = film.frames.reduce((low, f) => Math.min(low, f.ledger[GRAVITATIONAL]), Infinity);
+    this.zero = this.findZero();
     // as many frames as there are half pixels
     const step = Math.max(1, Math.floor(film.length / (2 * this.width)));
     const frames = film.frames.filter((_, i) => i % step === 0 || i === film.length - 1);
     const rows = frames.map((frame) => this.bands(frame));
-    const totals = frames.map((frame) => frame.ledger[TOTAL] - this.lowest);
-    const used = LEDGER.map((_, k) => rows.some((row) => Math.abs(row[k]) > 0));
-    const top = Math.max(...rows.map((row) => row.reduce((sum, x) => sum + Math.max(x, 0), 0)), ...totals, 1e-300);
-    this.scaleY = (this.height - TOP - BOTTOM) / (1.06 * top);
-    const y = (value) => this.height - BOTTOM - value * this.scaleY;
+    const totals = frames.map((frame) => frame.ledger[TOTAL] - this.zero);
+    const used = LEDGER.map((_, k) => frames.some((frame) => Math.abs(frame.ledger[k]) > 0));
+    const sum = (row, sign) => row.reduce((all, x) => all + Math.max(sign * x, 0), 0);
+    let top = Math.max(0, ...rows.map((row) => sum(row, 1)), ...totals);
+    const low = Math.min(0, ...rows.map((row) => -sum(row, -1)), ...totals);
+    // right after a start there may be nothing to tell yet: an axis of the size of what there is
+    const size = frames.reduce((most, { ledger }) => Math.max(most, Math.abs(ledger[TOTAL])), 0);
+    if (!(top - low > 1e-9 * size)) top = size || 1;
+    this.scaleY = (this.height - TOP - BOTTOM) / (1.06 * (top - low));
+    const y = (value) => this.height - BOTTOM - (value - 1.06 * low) * this.scaleY;
     const style = getComputedStyle(this.area);
-    this.axes(pen, 1.06 * top, y, style);
+    this.axes(pen, [1.06 * low, 1.06 * top], y, style);
     this.fill(pen, frames, rows, used, y);
     this.line(pen, frames, totals, y, style.getPropertyValue('--ink'));
-    this.writeLegend(used);
+    if (used[GRAVITATIONAL]) this.sayZero(pen, style);
+    this.writeLegend([...used, this.work(film.frames.at(-1)) !== 0]);
   }
 
+  // bands stand on one another; what is below zero hangs below the axis
   fill(pen, frames, rows, used, y) {
-    const base = new Float64Array(frames.length);
-    LEDGER.forEach(({ colour }, k) => {
-      if (!used[k]) return;
-      pen.beginPath();
-      frames.forEach((frame, i) => pen.lineTo(this.xOf(frame.time), y(base[i])));
-      for (let i = frames.length - 1; i >= 0; i--) {
-        pen.lineTo(this.xOf(frames[i].time), y(base[i] + Math.max(rows[i][k], 0)));
-      }
-      frames.forEach((_, i) => (base[i] += Math.max(rows[i][k], 0)));
-      pen.fillStyle = colour;
-      pen.globalAlpha = 0.82;
-      pen.fill();
-      pen.globalAlpha = 1;
-    });
+    for (const sign of [1, -1]) {
+      const base = new Float64Array(frames.length);
+      LEDGER.forEach(({ colour }, k) => {
+        const part = (i) => sign * Math.max(sign * rows[i][k], 0);
+        if (!used[k] || !rows.some((_, i) => part(i) !== 0)) return;
+        pen.beginPath();
+        frames.forEach((frame, i) => pen.lineTo(this.xOf(frame.time), y(base[i])));
+        for (let i = frames.length - 1; i >= 0; i--) pen.lineTo(this.xOf(frames[i].time), y(base[i] + part(i)));
+        frames.forEach((_, i) => (base[i] += part(i)));
+        pen.fillStyle = colour;
+        pen.globalAlpha = 0.82;
+        pen.fill();
+        pen.globalAlpha = 1;
+      });
+    }
+  }
+
+  // that the plot, unlike the numbers, counts gravitational energy from elsewhere
+  sayZero(pen, style) {
+    const { live, film } = this.player;
+    const where = live ? `its value at ${Number(film.first.time.toPrecision(4))} s` : 'its lowest value';
+    const text = `plot: gravitational from ${where}, ${quantity(this.zero, 'J', 4)}`;
+    pen.font = `10.5px ${style.fontFamily}`;
+    pen.textAlign = 'right';
+    pen.textBaseline = 'top';
+    const width = pen.measureText(text).width;
+    if (width > this.width - LEFT - RIGHT) return;
+    pen.fillStyle = style.getPropertyValue('--solid');
+    pen.globalAlpha = 0.75;
+    pen.fillRect(this.width - RIGHT - width - 6, TOP - 6, width + 6, 15);
+    pen.globalAlpha = 1;
+    pen.fillStyle = style.getPropertyValue('--muted');
+    pen.fillText(text, this.width - RIGHT - 3, TOP - 4);
   }
 
   // the sum, and dashed where it began
@@ -148,7 +192,7 @@ export class Plot {
     pen.setLineDash([]);
   }
 
-  axes(pen, top, y, style) {
+  axes(pen, [low, top], y, style) {
     const muted = style.getPropertyValue('--muted');
     const hair = style.getPropertyValue('--hair');
     pen.font = `11px ${style.fontFamily}`;
@@ -158,8 +202,9 @@ export class Plot {
     pen.textAlign = 'right';
     pen.textBaseline = 'middle';
     const count = Math.max(Math.min(Math.floor(this.height / 34), 5), 2);
-    const step = round125(top / count);
-    for (let value = 0; value <= top; value += step) {
+    const step = round125((top - low) / count);
+    for (let k = Math.ceil(low / step); k * step <= top; k++) {
+      const value = k * step;
       pen.beginPath();
       pen.moveTo(LEFT, Math.round(y(value)) + 0.5);
       pen.lineTo(this.width - RIGHT, Math.round(y(value)) + 0.5);
@@ -187,19 +232,19 @@ export class Plot {
       return element('div', { className: 'item', title: note }, element('i', { className: key === TOTAL ? 'swatch line' : 'swatch', css: { '--c': css } }), element('span', {}, label), value);
     };
     const parts = LEDGER.map((part, k) => (used[k] ? item(k, part.label, part.colour, part.note) : null)).filter(Boolean);
-    this.legend.replaceChildren(element('h2', {}, 'Energy'), item(TOTAL, 'Total', 'var(--ink)'), ...parts.reverse());
+    const rest = [item(RESIDUAL, 'Residual (integrator’s error)', 'transparent', 'what the total has moved by since the start, without the work of the hand')];
+    if (used[WORK]) rest.push(item(WORK, 'Work of the hand', 'transparent', 'what pulling and changed numbers have added since the start'));
+    this.legend.replaceChildren(element('h2', {}, 'Energy'), ...parts, item(TOTAL, 'Total', 'var(--ink)'), ...rest);
     const last = this.player.film.frames.at(-1);
     const drift = quantity(last.ledger[RESIDUAL], 'J', 2);
     this.canvas.setAttribute('aria-label', `Energy over time, from ${this.player.film.start} to ${last.time} seconds. The total has moved by ${drift} since the start.`);
   }
 
-  // the values at the moment that is shown
+  // the values at the moment that is shown, as in energy.csv
   tick(frame) {
     if (!this.values || !frame) return;
-    const bands = this.bands(frame);
     for (const [key, node] of this.values) {
-      const value = key === TOTAL ? frame.ledger[TOTAL] - this.lowest : bands[key];
-      node.textContent = quantity(value, 'J', 4);
+      node.textContent = quantity(key === WORK ? this.work(frame) : frame.ledger[key], 'J', 4);
     }
   }
 
@@ -213,13 +258,13 @@ export class Plot {
     const frame = film.frames[film.indexAt(this.timeAt(x))];
     const at = this.xOf(frame.time);
     this.hover.style.transform = `translateX(${at}px)`;
-    const bands = this.bands(frame);
-    const rows = LEDGER.map((part, k) => [part, bands[k]]).filter((_, k) => this.values?.has(k));
+    const rows = LEDGER.map((part, k) => [part, frame.ledger[k]]).filter((_, k) => this.values?.has(k));
     this.tip.replaceChildren(
       element('b', {}, `${Number(frame.time.toPrecision(6))} s`),
-      ...rows.reverse().map(([part, value]) => element('div', {}, element('i', { className: 'swatch', css: { '--c': part.colour } }), `${part.label} ${quantity(value, 'J', 4)}`)),
-      element('div', {}, `Total ${quantity(frame.ledger[TOTAL] - this.lowest, 'J', 5)}`),
-      element('div', { className: 'muted' }, `moved by ${quantity(frame.ledger[RESIDUAL], 'J', 2)} since the start`),
+      ...rows.map(([part, value]) => element('div', {}, element('i', { className: 'swatch', css: { '--c': part.colour } }), `${part.label} ${quantity(value, 'J', 4)}`)),
+      element('div', {}, `Total ${quantity(frame.ledger[TOTAL], 'J', 5)}`),
+      element('div', { className: 'muted' }, `Residual ${quantity(frame.ledger[RESIDUAL], 'J', 2)}`),
+      ...(this.work(frame) ? [element('div', { className: 'muted' }, `Work of the hand ${quantity(this.work(frame), 'J', 4)}`)] : []),
     );
     const right = at > this.width / 2;
     this.tip.style.left = right ? '' : `${at + 10}px`;

@@ -14,6 +14,10 @@ export class Room {
     buffer(gl, new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]));
     attribute(gl, 0, 2, 8, 0);
     gl.bindVertexArray(null);
+    this.setExtent(head, scene);
+  }
+
+  setExtent(head, scene) {
     this.faces = [...boxFaces(head), ...planes(head, scene)];
   }
 

@@ -23,6 +23,56 @@ const STILL = 2;
 const SLOW = 40; // ms
 const PATIENCE = 10; // frames
 
+const places = ({ bodies }) => {
+  const list = [];
+  for (let at = 0; at < bodies.length; at += 22) {
+    const p = Array.from(bodies.subarray(at, at + 3));
+    if (p.every(Number.isFinite)) list.push(p);
+  }
+  return list;
+};
+
+// the ball about the box that holds these places
+function ball(points, margin) {
+  const low = [0, 1, 2].map((k) => points.reduce((m, p) => Math.min(m, p[k]), Infinity));
+  const high = [0, 1, 2].map((k) => points.reduce((m, p) => Math.max(m, p[k]), -Infinity));
+  return { centre: scale(add(low, high), 0.5), radius: 0.5 * length(sub(high, low)) + margin };
+}
+
+const largest = (head) => head.shapes.reduce((most, shape) => Math.max(most, shape.radius), 1e-6);
+
+// the ball that holds another one, the bodies of a frame and, if wanted, where they have been
+export function everything(head, film, frame, bounds, withPaths) {
+  const size = 1.2 * largest(head);
+  const { centre, radius } = bounds;
+  const step = Math.max(1, Math.floor(film.length / 400));
+  const past = withPaths ? film.frames.filter((_, i) => i % step === 0) : [];
+  const points = [...past, frame].flatMap(places);
+  const seen = ({ centre: c, radius: r }) => points.every((p) => length(sub(p, c)) + size <= r);
+  if (!points.length || seen(bounds)) return bounds;
+  // a ball has no corners: its ends along the axes stand for it
+  const ends = [0, 1, 2].flatMap((k) => [-1, 1].map((sign) => centre.map((x, i) => (i === k ? x + sign * (radius - size) : x))));
+  return ball([...points, ...(head.box ? ends : [])], size);
+}
+
+// The ball of a live view: it goes along with the bodies that leave it, and grows when they part. While
+// bodies are in the box, those that have left it are let go.
+export function keepInSight(head, frame, bounds) {
+  const size = 1.2 * largest(head);
+  let points = places(frame);
+  if (head.box) {
+    const inside = points.filter((p) => length(sub(p, bounds.centre)) < 1.6 * bounds.radius);
+    if (inside.length) points = inside;
+  }
+  if (!points.length) return bounds;
+  const now = ball(points, size);
+  const radius = Math.max(bounds.radius, now.radius);
+  const way = sub(now.centre, bounds.centre);
+  const off = length(way) + now.radius - radius;
+  if (off <= 0) return radius > bounds.radius ? { centre: now.centre, radius } : bounds;
+  return { centre: add(bounds.centre, scale(way, Math.min(off / length(way), 1))), radius };
+}
+
 // the ball that holds what there is to see: the box, or where the bodies go
 export function extent(head, film) {
   const points = [];
@@ -32,7 +82,7 @@ export function extent(head, film) {
       points.push(rotate(box.orientation, [0, 1, 2].map((k) => ((i >> k) & 1 ? box.max[k] : box.min[k]))));
     }
   }
-  const size = head.shapes.reduce((most, shape) => Math.max(most, shape.radius), 1e-6);
+  const size = largest(head);
   const reach = box ? 0.5 * length(sub(box.max, box.min)) : Infinity;
   const middle = box ? scale(points.reduce(add), 1 / 8) : [0, 0, 0];
   const step = Math.max(1, Math.floor(film.length / 400));
@@ -45,10 +95,10 @@ export function extent(head, film) {
     }
   }
   if (!points.length) return { centre: [0, 0, 0], radius: 2 * size };
-  const low = [0, 1, 2].map((k) => points.reduce((m, p) => Math.min(m, p[k]), Infinity));
-  const high = [0, 1, 2].map((k) => points.reduce((m, p) => Math.max(m, p[k]), -Infinity));
-  const half = 0.5 * length(sub(high, low));
-  return { centre: scale(add(low, high), 0.5), radius: box ? Math.max(half, size) : half + 1.2 * size };
+  const all = ball(points, 0);
+  if (box) return { centre: all.centre, radius: Math.max(all.radius, size) };
+  // bodies that have not moved yet will want some room
+  return { centre: all.centre, radius: Math.max(all.radius + 1.2 * size, head.live ? 3 * size : 0) };
 }
 
 export class Scene {
@@ -111,7 +161,7 @@ export class Scene {
 
   setExtent(bounds) {
     this.extent = bounds;
-    this.room = new Room(this.gl, this.head, bounds);
+    this.room.setExtent(this.head, bounds);
   }
 
   // milliseconds between two frames that followed each other at once

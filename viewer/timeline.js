@@ -108,7 +108,9 @@ export class Timeline {
     if (document.activeElement !== this.slider || this.player.playing || this.player.live) this.slider.value = String(1000 * part);
     else if (Math.abs(Number(this.slider.value) - 1000 * part) > 1e-6) this.slider.value = String(1000 * part);
     this.slider.style.setProperty('--part', `${100 * part}%`);
-    const shown = time(now, this.head.interval);
+    // a single step of a run that stands still is to be seen
+    const still = this.head.live && !this.actions.isRunning();
+    const shown = time(now, still ? Math.min(this.head.interval, this.head.dt) : this.head.interval);
     if (this.written === shown) return;
     this.written = shown;
     this.clock.textContent = shown;

@@ -149,7 +149,16 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
         format!(", {} of the critical {} s", short(s.dt / critical), short(critical))
     });
     let mut rows = vec![
-        ("scene", format!("{}, {} bodies, {} particles", s.scene, s.bodies, count(s.particles))),
+        (
+            "scene",
+            format!(
+                "{}, {} {}, {} particles",
+                s.scene,
+                s.bodies,
+                if s.bodies == 1 { "body" } else { "bodies" },
+                count(s.particles)
+            ),
+        ),
         ("integrator", format!("{}, dt = {} s{critical}", s.integrator, short(s.dt))),
         ("steps", format!("{steps} in {} s", short(s.wall_seconds))),
         ("speed", format!("{} steps/s", count(s.steps_per_second as u64))),
@@ -171,6 +180,7 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
         ("residual", format!("{} J{share}", short(s.energy_residual))),
         ("deepest contact", format!("{} m", short(s.max_depth))),
         ("results", folder.path().display().to_string()),
+        ("look at it", folder.path().join("motion.html").display().to_string()),
     ];
     let advice = advice(s, relative);
     rows.extend(advice.into_iter().map(|advice| ("beware", advice)));

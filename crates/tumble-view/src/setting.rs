@@ -69,7 +69,13 @@ pub fn load(scene: &Scene, text: String, sets: Vec<String>) -> Result<Loaded, St
     let options = LoadOptions { sets, force: scene.force };
     // meshes have full paths by now
     load_text(&scene.name, source, Path::new("."), &options)
-        .map_err(|error| error.messages().join("\n"))
+        // a page has no flags: the one to insist with belongs to the command that serves it
+        .map_err(|error| {
+            error
+                .messages()
+                .join("\n")
+                .replace("insist with --force", "restart tumble view with --force")
+        })
 }
 
 /// Calls `change` with every table that a key reaches, and the last part of the key. As for `--set`,
