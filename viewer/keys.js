@@ -94,7 +94,8 @@ function belongsTo(event) {
 export function helpDialog(dialog, app) {
   const mouse = [
     ['Drag', 'turn the view'],
-    ['Right button, two fingers', 'move it'],
+    ['Right button', 'move it'],
+    ['Two fingers', 'move it'],
     ['Wheel, pinch', 'zoom'],
     ['Click', 'select a body'],
     ...(app.head.live ? [['Shift and drag', 'pull a body along']] : []),

@@ -135,7 +135,7 @@ export class Plot {
     this.fill(pen, frames, rows, used, y);
     this.line(pen, frames, totals, y, style.getPropertyValue('--ink'));
     if (used[GRAVITATIONAL]) this.sayZero(pen, style);
-    this.writeLegend([...used, this.work(film.frames.at(-1)) !== 0]);
+    this.writeLegend(used, this.work(film.frames.at(-1)) !== 0);
   }
 
   // bands stand on one another; what is below zero hangs below the axis
@@ -221,8 +221,8 @@ export class Plot {
     }
   }
 
-  writeLegend(used) {
-    const shown = used.map(Number).join('');
+  writeLegend(used, hasWork) {
+    const shown = [...used, hasWork].map(Number).join('');
     if (shown === this.legendKey) return;
     this.legendKey = shown;
     this.values = new Map();
@@ -233,7 +233,7 @@ export class Plot {
     };
     const parts = LEDGER.map((part, k) => (used[k] ? item(k, part.label, part.colour, part.note) : null)).filter(Boolean);
     const rest = [item(RESIDUAL, 'Residual (integrator’s error)', 'transparent', 'what the total has moved by since the start, without the work of the hand')];
-    if (used[WORK]) rest.push(item(WORK, 'Work of the hand', 'transparent', 'what pulling and changed numbers have added since the start'));
+    if (hasWork) rest.push(item(WORK, 'Work of the hand', 'transparent', 'what pulling and changed numbers have added since the start'));
     this.legend.replaceChildren(element('h2', {}, 'Energy'), ...parts, item(TOTAL, 'Total', 'var(--ink)'), ...rest);
     const last = this.player.film.frames.at(-1);
     const drift = quantity(last.ledger[RESIDUAL], 'J', 2);

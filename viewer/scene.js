@@ -52,7 +52,9 @@ export function everything(head, film, frame, bounds, withPaths) {
   if (!points.length || seen(bounds)) return bounds;
   // a ball has no corners: its ends along the axes stand for it
   const ends = [0, 1, 2].flatMap((k) => [-1, 1].map((sign) => centre.map((x, i) => (i === k ? x + sign * (radius - size) : x))));
-  return ball([...points, ...(head.box ? ends : [])], size);
+  const all = ball([...points, ...(head.box ? ends : [])], size);
+  // what is nearer to the eye than the middle looks larger
+  return { centre: all.centre, radius: 1.2 * all.radius };
 }
 
 // The ball of a live view: it goes along with the bodies that leave it, and grows when they part. While
