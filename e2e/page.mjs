@@ -6,52 +6,14 @@
 
 import fs from 'node:fs';
 import path from 'node:path';
-import { createRequire } from 'node:module';
 import { pathToFileURL } from 'node:url';
+import { check, finish, launch, open, quiet, until } from './browser.mjs';
 
-const require = createRequire(path.join(import.meta.dirname, '.tools', 'here.js'));
-const { chromium } = require('playwright-core');
 const [, , runs, pictures] = process.argv;
-const FLAGS = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
-const SOFTWARE = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'];
-
-let failures = 0;
-function check(what, holds, detail = '') {
-  if (!holds) failures += 1;
-  console.log(`${holds ? 'ok  ' : 'FAIL'} ${what}${holds || detail === '' ? '' : `: ${detail}`}`);
-}
-
-async function until(what, page, condition, argument) {
-  try {
-    await page.waitForFunction(condition, argument, { timeout: 15000 });
-    check(what, true);
-  } catch (error) {
-    check(what, false, error.message.split('\n')[0]);
-  }
-}
-
-// opens a page and keeps every word of its console
-async function open(browser, url, options = {}) {
-  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, reducedMotion: 'reduce', acceptDownloads: true, ...options });
-  const page = await context.newPage();
-  page.said = [];
-  page.on('console', (message) => page.said.push(`${message.type()}: ${message.text()}`));
-  page.on('pageerror', (error) => page.said.push(`error: ${error.message}`));
-  page.on('request', (request) => {
-    if (!/^(file|data|blob|ws|http:\/\/127)/.test(request.url())) page.said.push(`asked for ${request.url()}`);
-  });
-  await page.goto(url);
-  return page;
-}
 
 const recorded = (scene) => pathToFileURL(path.join(runs, scene, 'motion.html')).href;
 const time = (page) => page.evaluate(() => tumble.app.player.time);
 const picture = (page, name) => pictures && page.screenshot({ path: path.join(pictures, `${name}.png`) });
-
-async function quiet(what, page) {
-  check(`${what}: the console is silent`, page.said.length === 0, page.said.slice(0, 5).join(' | '));
-  await page.context().close();
-}
 
 // the rows of trajectory.csv nearest to a time
 function row(scene, at) {
@@ -323,7 +285,7 @@ async function live(browser) {
 }
 
 const only = process.argv[4];
-const browser = await chromium.launch({ executablePath: '/usr/bin/chromium', args: [...FLAGS, ...SOFTWARE] });
+const browser = await launch();
 try {
   for (const part of [drawing, playing, panel, views, phone, free, crowd, labelled, without, live]) {
     if (only && part.name !== only) continue;
@@ -333,5 +295,4 @@ try {
 } finally {
   await browser.close();
 }
-console.log(failures === 0 ? '\nall is well' : `\n${failures} failed`);
-process.exit(failures === 0 ? 0 : 1);
+finish();

@@ -12,7 +12,7 @@ if ! [ -d e2e/.tools/node_modules/playwright-core ]; then
 fi
 
 cargo build --release -p tumble-cli --locked
-tumble=${CARGO_TARGET_DIR:-target}/release/tumble
+tumble=$(realpath "${CARGO_TARGET_DIR:-target}")/release/tumble
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 for scene in task2 task2-cat racket many slope; do
@@ -23,3 +23,5 @@ done
     --set 'body.1.copies={count=[10,5,10],spacing=[0.18,0.2,0.18],seed=2}' >/dev/null
 
 node e2e/page.mjs "$out" "$@"
+# not when one part of the pages alone is asked for
+[ -n "${2:-}" ] || node e2e/live.mjs "$tumble" "$@"

@@ -323,6 +323,8 @@ export class App {
   liveFrame(buffer) {
     const { film } = this;
     if (!film.push(buffer)) return;
+    // begun again: what was looked back at is gone
+    if (film.length === 1) this.player.toNow();
     // of a crowd a look now and then will do
     if (this.head.bodies.length < 200 || film.length % 10 === 1) this.overlays.learn(film.frames.at(-1), this.moment);
     this.learnForces();

@@ -49,6 +49,7 @@ function sameBodies(a, b) {
 function startLive(app) {
   let raw = null;
   let controls = null;
+  let fresh = false;
   const send = (message) => {
     if (!link.send(message)) notice('There is no connection; nothing was sent.');
   };
@@ -56,6 +57,7 @@ function startLive(app) {
     link: (state, seconds) => {
       document.body.dataset.link = state;
       app.setConnected(state === 'open');
+      if (state === 'open') fresh = true;
       if (controls) controls.link(state, seconds);
       else if (state === 'closed') fail(`No connection to the simulation yet; trying again in ${seconds} s.`);
       else if (state === 'connecting') fail('Connecting to the simulation …');
@@ -64,6 +66,8 @@ function startLive(app) {
     head: (head) => {
       const first = raw === null;
       if (sameBodies(raw, head)) {
+        // another server, or one that went on unseen: no line leads from the last frame to the next
+        if (fresh) app.film.clear();
         app.softHead(head);
       } else {
         app.build(head, null);
@@ -71,6 +75,7 @@ function startLive(app) {
         controls.link('open', 0);
       }
       raw = head;
+      fresh = false;
       controls.parameters(head.parameters ?? [], head.bodies);
       if (first) begin(app);
     },
