@@ -6,7 +6,8 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
     BodyModel, BodyState, BuildError, BuildErrors, ContactLaw, Damping, DragModes, Integrator,
-    Material, MaterialOverride, Model, Shape, State, WallBox, WallPlane, World, critical_dt,
+    Material, MaterialOverride, Model, Motion, Shape, State, Surface, WallBox, WallPlane, World,
+    critical_dt,
 };
 
 /// A body as a user describes it.
@@ -20,6 +21,8 @@ pub struct Body {
     velocity: DVec3,
     angular_velocity: DVec3,
     material: MaterialOverride,
+    surface: Surface,
+    motion: Motion,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +43,8 @@ impl Body {
             velocity: DVec3::ZERO,
             angular_velocity: DVec3::ZERO,
             material: MaterialOverride::default(),
+            surface: Surface::None,
+            motion: Motion::Free,
         }
     }
 
@@ -88,6 +93,18 @@ impl Body {
     /// The material of its contacts, where it is not the world's.
     pub fn material(mut self, material: MaterialOverride) -> Self {
         self.material = material;
+        self
+    }
+
+    /// What other bodies meet of it; nothing unless said.
+    pub fn surface(mut self, surface: Surface) -> Self {
+        self.surface = surface;
+        self
+    }
+
+    /// What moves it; forces unless said.
+    pub fn motion(mut self, motion: Motion) -> Self {
+        self.motion = motion;
         self
     }
 }
@@ -306,6 +323,8 @@ impl WorldBuilder {
             has_friction: contacts.iter().any(|law| law.friction > 0.0),
             is_damped: contacts.iter().any(ContactLaw::is_damped),
             contacts,
+            surface: body.surface,
+            motion: body.motion,
         })
     }
 }

@@ -42,6 +42,7 @@ mod hash;
 mod lanes;
 mod material;
 mod model;
+mod motion;
 mod restore;
 mod scratch;
 mod shape;
@@ -49,6 +50,7 @@ mod stability;
 pub mod stage;
 mod state;
 pub mod step;
+mod surface;
 mod wall;
 mod world;
 
@@ -59,6 +61,7 @@ pub use flight::DragModes;
 pub use glam::{DMat3, DQuat, DVec3};
 pub use material::{ContactLaw, Damping, Material, MaterialOverride, damping_ratio, restitution};
 pub use model::{BodyModel, Integrator, Model};
+pub use motion::{Motion, Oscillation, Prescribed};
 pub use restore::StateError;
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{
@@ -69,5 +72,6 @@ pub use shape::{
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::Pull;
 pub use state::{BodyState, FrictionSpring, State, Tally};
+pub use surface::Surface;
 pub use wall::{WallBox, WallPlane};
 pub use world::{BodyView, World};

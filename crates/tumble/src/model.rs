@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use crate::flight::DragModes;
 use crate::shape::Shape;
 use crate::wall::WallPlane;
-use crate::{BodyState, ContactLaw};
+use crate::{BodyState, ContactLaw, Motion, Surface};
 
 /// How a step advances time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -75,6 +75,10 @@ pub struct BodyModel {
     pub has_friction: bool,
     /// Whether the force of any of these contacts depends on velocity.
     pub is_damped: bool,
+    /// What other bodies meet of it.
+    pub surface: Surface,
+    /// What moves it.
+    pub motion: Motion,
 }
 
 impl BodyModel {
