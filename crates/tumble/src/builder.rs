@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
+use crate::surface::Solids;
 use crate::{
     BodyModel, BodyState, BuildError, BuildErrors, ContactLaw, Damping, DragModes, Integrator,
     Material, MaterialOverride, Model, Motion, PairMaterial, Shape, State, Surface, WallBox,
@@ -225,9 +226,10 @@ impl WorldBuilder {
             bodies: Vec::with_capacity(self.bodies.len()),
         };
         let mut state = State::default();
+        let mut solids = Solids::default();
         for (index, body) in self.bodies.iter().enumerate() {
             let name = body.name.clone().unwrap_or_else(|| format!("body {index}"));
-            match self.start(&model, name, body) {
+            match self.start(&model, name, body, &mut solids) {
                 Ok((body_model, body_state)) => {
                     model.bodies.push(body_model);
                     state.bodies.push(body_state);
@@ -237,6 +239,7 @@ impl WorldBuilder {
             }
         }
         errors.extend(same_names(&model));
+        errors.extend(overlaps(&model, &state));
         errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && !self.force).map(
             |critical| BuildError::Unstable {
                 dt: self.dt,
@@ -271,6 +274,9 @@ impl WorldBuilder {
             let allowed =
                 "left out with the integrator \"euler\": only \"splitting\" refines its steps";
             check("energy_tolerance", refines, &tolerance, allowed);
+            let alone = self.bodies.iter().all(|body| body.surface == Surface::None);
+            let allowed = "left out where bodies meet each other: it refines the steps of each body by itself";
+            check("energy_tolerance", alone, &tolerance, allowed);
         }
     }
 
@@ -280,20 +286,30 @@ impl WorldBuilder {
         model: &Model,
         name: String,
         body: &Body,
+        solids: &mut Solids,
     ) -> Result<(BodyModel, BodyState), BuildError> {
-        let body_model = self.body_model(name, body)?;
+        let body_model = self.body_model(name, body, solids)?;
         let body_state = body_state(&body_model, body)?;
         check_inside(model, &body_model, &body_state)?;
         Ok((body_model, body_state))
     }
 
-    fn body_model(&self, name: String, body: &Body) -> Result<BodyModel, BuildError> {
+    fn body_model(
+        &self,
+        name: String,
+        body: &Body,
+        solids: &mut Solids,
+    ) -> Result<BodyModel, BuildError> {
+        if let Some((quantity, value, allowed)) = check_body(body) {
+            return Err(BuildError::Body { body: name, quantity, value, allowed });
+        }
         let (quantity, value, mass) = match body.mass {
             Mass::Total(mass) => ("mass", mass, mass),
             Mass::Particle(mass) => {
                 ("particle_mass", mass, mass * body.shape.particles().len() as f64)
             }
         };
+        let solid = solids.of(&name, &body.shape, body.surface)?;
         let inertia = body.shape.gyration() * mass;
         let inverse_inertia = body.shape.principal().inverse() * (1.0 / mass);
         let fits = inertia.is_finite() && inverse_inertia.is_finite();
@@ -334,6 +350,7 @@ impl WorldBuilder {
             is_damped: contacts.iter().any(ContactLaw::is_damped),
             contacts,
             surface: body.surface,
+            solid,
             motion: body.motion,
         })
     }
@@ -352,11 +369,44 @@ fn extent(shape: &Shape, surface: Surface) -> f64 {
     reach * (1.0 + 1e-9)
 }
 
+/// Bodies that start in each other, deeper than contact alone could press them.
+fn overlaps(model: &Model, state: &State) -> Vec<BuildError> {
+    let name = |index: u32| model.bodies[index as usize].name.clone();
+    let pairs = crate::stage::overlaps(model, state).into_iter();
+    pairs
+        .map(|(first, second, depth)| BuildError::Overlap {
+            first: name(first),
+            second: name(second),
+            depth,
+        })
+        .collect()
+}
+
 /// The smallest distance between two walls that face each other with room between them (m).
 fn smallest_gap(walls: &[(WallPlane, MaterialOverride)]) -> Option<f64> {
     let pairs = walls.iter().flat_map(|(a, _)| walls.iter().map(move |(b, _)| (a, b)));
     let facing = pairs.filter(|(a, b)| a.normal.dot(b.normal) < -1.0 + 1e-9);
     facing.map(|(a, b)| -(a.offset + b.offset)).filter(|&gap| gap > 0.0).min_by(f64::total_cmp)
+}
+
+/// Numbers of the bodies' surfaces and motions.
+fn check_body(body: &Body) -> Option<(&'static str, String, &'static str)> {
+    if let Surface::Spheres { radius } = body.surface
+        && !(radius > 0.0 && radius.is_finite())
+    {
+        return Some(("particle_radius", radius.to_string(), "a number of m above 0"));
+    }
+    let Motion::Prescribed(given) = &body.motion else { return None };
+    let three = "three finite numbers";
+    if !given.surface_velocity.is_finite() {
+        return Some(("surface_velocity", given.surface_velocity.to_string(), three));
+    }
+    let swing = given.oscillation.as_ref()?;
+    if !(swing.amplitude.is_finite() && swing.frequency.is_finite() && swing.phase.is_finite()) {
+        let allowed = "a finite amplitude (m), frequency (Hz) and phase (rad)";
+        return Some(("oscillation", format!("{swing:?}"), allowed));
+    }
+    None
 }
 
 fn check_material(

@@ -1,6 +1,6 @@
 //! The account of every joule.
 
-use crate::stage::Placed;
+use crate::stage::{Meeting, Placed};
 use crate::{Model, State};
 
 /// Where the energy of a run is, or went, at one moment (J).
@@ -25,6 +25,11 @@ pub struct Energy {
 impl Energy {
     /// The ledger of a state.
     pub fn of(model: &Model, state: &State) -> Self {
+        Self::with(model, state, Meeting::default())
+    }
+
+    /// As [`Energy::of`]; what `meeting` knows may spare some work.
+    pub(crate) fn with(model: &Model, state: &State, mut meeting: Meeting) -> Self {
         let mut energy = Self {
             drag: state.tally.drag,
             dashpot: state.tally.dashpot,
@@ -42,6 +47,7 @@ impl Energy {
             energy.gravitational -= body.mass * model.gravity.dot(s.position);
             energy.elastic += place.elastic_energy(model, &state.springs[index]);
         }
+        energy.elastic += meeting.elastic_energy(model, state);
         energy
     }
 

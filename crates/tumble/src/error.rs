@@ -1,5 +1,7 @@
 //! What can go wrong, in words that say where and what to do.
 
+use crate::SurfaceError;
+
 /// Why a world cannot be built.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BuildError {
@@ -41,6 +43,22 @@ pub enum BuildError {
         /// Name of the body with the fastest contact.
         body: String,
     },
+    /// A body cannot be met by its mesh.
+    Surface {
+        /// Name of the body.
+        body: String,
+        /// What is wrong with the mesh.
+        error: SurfaceError,
+    },
+    /// Two bodies start in each other.
+    Overlap {
+        /// Name of the one.
+        first: String,
+        /// Name of the other.
+        second: String,
+        /// How deep they are in each other (m).
+        depth: f64,
+    },
     /// Two bodies have the same name.
     SameName {
         /// The name.
@@ -66,6 +84,14 @@ impl std::fmt::Display for BuildError {
                 f,
                 "`dt` is {dt} s, but contact of body \"{body}\" is stable only up to {critical:.3e} s; \
                  take a smaller `dt` or `collision_stiffness`, or insist with --force"
+            ),
+            Self::Surface { body, error } => {
+                write!(f, "body \"{body}\" cannot have `surface = \"mesh\"`: {error}")
+            }
+            Self::Overlap { first, second, depth } => write!(
+                f,
+                "bodies \"{first}\" and \"{second}\" start {depth:.3e} m in each other; move one of them by its `position`, \
+                 or have them pushed apart by `overlaps = \"push\"`"
             ),
             Self::SameName { body } => {
                 write!(f, "two bodies are called \"{body}\"; give each its own `name`")
@@ -108,13 +134,15 @@ pub struct StepError {
     pub quantity: &'static str,
     /// Its value.
     pub value: f64,
+    /// Name of the other body, where it could pass through one.
+    pub other: Option<String>,
     /// A step (s) that would do, where one can be named.
     pub dt: Option<f64>,
 }
 
 impl std::fmt::Display for StepError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { step, time, body, particle, quantity, value, dt } = self;
+        let Self { step, time, body, particle, quantity, value, other, dt } = self;
         let whose = match particle {
             Some(particle) => format!("particle {particle} of body \"{body}\""),
             None => format!("body \"{body}\""),
@@ -123,13 +151,17 @@ impl std::fmt::Display for StepError {
             f,
             "the simulation diverged at step {step} (t = {time} s): {quantity} of {whose} is {value}"
         )?;
-        match dt {
-            Some(dt) => write!(
+        match (dt, other) {
+            (Some(dt), Some(other)) => write!(
+                f,
+                " m against body \"{other}\", through which it could pass in one step; try --set dt={dt:.1e}"
+            ),
+            (Some(dt), None) => write!(
                 f,
                 " m, more than half the way to the opposite wall; try --set dt={dt:.1e} or a larger \
                  `collision_stiffness`"
             ),
-            None => write!(f, "; try a smaller `dt` or a smaller `collision_stiffness`"),
+            (None, _) => write!(f, "; try a smaller `dt` or a smaller `collision_stiffness`"),
         }
     }
 }

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use crate::flight::DragModes;
 use crate::shape::Shape;
 use crate::wall::WallPlane;
-use crate::{BodyState, ContactLaw, Motion, PairMaterial, Surface};
+use crate::{BodyState, ContactLaw, Motion, PairMaterial, SignedDistance, Surface};
 
 /// How a step advances time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,6 +83,8 @@ pub struct BodyModel {
     pub extent: f64,
     /// What other bodies meet of it.
     pub surface: Surface,
+    /// The distance to its mesh, where that is its surface.
+    pub solid: Option<Arc<SignedDistance>>,
     /// What moves it.
     pub motion: Motion,
 }

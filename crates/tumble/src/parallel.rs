@@ -3,6 +3,8 @@
 
 use rayon::prelude::*;
 
+use crate::{BodyState, Tally};
+
 /// Bodies in a chunk.
 pub(crate) const CHUNK: usize = 64;
 
@@ -29,6 +31,31 @@ pub(crate) fn each_of_two<T: Send, U: Send>(
         let both = chunks.par_iter_mut().zip(others).enumerate();
         both.for_each(|(index, (chunk, other))| work(index, chunk, other));
     }
+}
+
+/// Calls `work` with every body and its index, and adds up what it returns.
+pub(crate) fn tally_bodies(
+    tally: &mut Tally,
+    bodies: &mut [BodyState],
+    work: impl Fn(usize, &mut BodyState) -> Tally + Sync,
+) {
+    let each = |tally: &mut Tally, first: usize, bodies: &mut [BodyState]| {
+        for (index, body) in (first..).zip(bodies) {
+            *tally += work(index, body);
+        }
+    };
+    if bodies.len() <= CHUNK {
+        return each(tally, 0, bodies);
+    }
+    let chunks = bodies.par_chunks_mut(CHUNK).enumerate();
+    let sums: Vec<Tally> = chunks
+        .map(|(index, chunk)| {
+            let mut sum = Tally::default();
+            each(&mut sum, index * CHUNK, chunk);
+            sum
+        })
+        .collect();
+    sums.into_iter().for_each(|sum| *tally += sum);
 }
 
 /// Calls `work` with the index of the first body of each chunk and the chunk of `items`, one of which belongs to each body.

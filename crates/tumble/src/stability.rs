@@ -20,7 +20,7 @@ pub struct CriticalStep {
 /// dashpot of damping ratio ζ the bound is (2/ω)(√(1 + ζ²) − ζ). However many particles of a body are in
 /// contact, its stiffness over its mass is no more than that of one of them, and so is its rotational
 /// stiffness over its inertia; with mass spread otherwise the largest ratio over all motions takes the place
-/// of 1/m. Walls that meet in a corner add up; of two that face each other the stiffer counts.
+/// of 1/m. Where bodies meet each other, two of a kind count, with all their particles. Walls that meet in a corner add up; of two that face each other the stiffer counts.
 pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
     let of_body = |body: &BodyModel| {
         let per_mass = match &body.drag_modes {
@@ -39,10 +39,16 @@ pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
                 |law| law.damping,
                 |law| if law.friction > 0.0 { law.friction_damping } else { 0.0 },
             );
+        // two bodies alike, all particles of both in contact
+        let between = body.pair_material.law(&body.pair_material);
+        let meets = if model.meets { 2.0 * per_mass } else { 0.0 };
+        let square = square.max(between.stiffness.max(between.friction_spring) * meets);
+        let half_rate = half_rate.max(0.5 * between.damping.max(between.friction_damping) * meets);
         // (2/ω)(√(1 + ζ²) − ζ), without cancellation and for ω = 0 too
         2.0 / ((square + half_rate * half_rate).sqrt() + half_rate)
     };
-    let steps = model.bodies.iter().map(|body| (of_body(body), body));
+    let free = model.bodies.iter().filter(|body| body.is_free());
+    let steps = free.map(|body| (of_body(body), body));
     let (dt, body) = steps.min_by(|a, b| a.0.total_cmp(&b.0))?;
     dt.is_finite().then(|| CriticalStep { dt, body: body.name.clone() })
 }

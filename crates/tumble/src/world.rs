@@ -126,7 +126,7 @@ impl World {
 
     /// Where the energy is, or went.
     pub fn energy(&self) -> Energy {
-        Energy::of(&self.model, &self.state)
+        Energy::with(&self.model, &self.state, self.scratch.meeting.clone())
     }
 }
 

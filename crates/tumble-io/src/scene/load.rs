@@ -262,6 +262,8 @@ fn guilty(
         BuildError::Body { body, quantity, .. } => (Some(body), *quantity),
         BuildError::Outside { body, .. } => (Some(body), "position"),
         BuildError::SameName { body } => (Some(body), "name"),
+        BuildError::Surface { body, .. } => (Some(body), "surface"),
+        BuildError::Overlap { second, .. } => (Some(second), "position"),
         BuildError::Unstable { .. } => (None, "dt"),
     };
     let index = body.and_then(|name| owners.get(name).copied());

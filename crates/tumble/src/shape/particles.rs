@@ -71,15 +71,20 @@ impl Particles {
             + size_of::<Node>() * self.nodes.capacity()
     }
 
-    /// Appends the slots of all particles within `distance` (m) of a place, in their order.
-    pub(crate) fn list_within(&self, place: DVec3, distance: f64, slots: &mut Vec<u32>) {
+    /// Appends the slots of all particles but those in balls (centre and radius, m) that `may_matter` says no of, in
+    /// their order.
+    pub(crate) fn list_where(
+        &self,
+        mut may_matter: impl FnMut(DVec3, f64) -> bool,
+        slots: &mut Vec<u32>,
+    ) {
         if self.is_empty() {
             return;
         }
-        let near = |at: DVec3| at.distance_squared(place) <= distance * distance;
         let mut branches = vec![Branch::root(&self.nodes)];
         while let Some(branch) = branches.pop() {
-            if self.nodes[branch.node as usize].distance(place) > distance {
+            let (centre, radius) = self.nodes[branch.node as usize].ball();
+            if !may_matter(centre, radius) {
                 continue;
             }
             if let Some([left, right]) = branch.children() {
@@ -87,8 +92,7 @@ impl Particles {
                 continue;
             }
             let start = branch.first * tree::LEAF as u32;
-            let end = (start + tree::LEAF as u32).min(self.len() as u32);
-            slots.extend((start..end).filter(|&slot| near(self.at(slot))));
+            slots.extend(start..(start + tree::LEAF as u32).min(self.len() as u32));
         }
     }
 

@@ -103,9 +103,9 @@ impl Node {
         Self { centre, half, count: 0.0, mean: centre, spread: [0.0; 6] }
     }
 
-    /// How far a place is from the box (m).
-    pub fn distance(&self, place: DVec3) -> f64 {
-        ((place - self.centre).abs() - self.half).max(DVec3::ZERO).length()
+    /// Centre and radius (m) of a ball about the particles, whatever rounding does.
+    pub fn ball(&self) -> (DVec3, f64) {
+        (self.centre, self.half.length() * (1.0 + 1e-12))
     }
 
     /// The spread times a vector.

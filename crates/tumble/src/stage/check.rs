@@ -2,11 +2,13 @@
 
 use glam::DMat3;
 
+use super::TooFast;
 use crate::{BodyModel, BodyState, Model, Scratch, State, StepError};
 
 /// Refuses a state with a number that is NaN or infinite, a particle that has come more than half way from
 /// one wall to the wall that faces it, and a step that moves a particle that far: both could have
-/// passed through.
+/// passed through. So could two bodies that move against each other, in one step, by half of what the thinner of them is
+/// thick.
 ///
 /// # Errors
 /// [`StepError`] names the step, time, body, particle, quantity and value, and a step that would do.
@@ -27,12 +29,31 @@ pub fn check(model: &Model, state: &State, scratch: &Scratch) -> Result<(), Step
                 particle,
                 quantity,
                 value,
+                other: None,
                 // a quarter of the limit leaves room for the motion to go on
                 dt: limit.map(|limit| 0.25 * model.dt * limit / value),
             });
         }
     }
-    Ok(())
+    match scratch.meeting.too_fast() {
+        Some(pair) => Err(passes_through(model, state, &pair)),
+        None => Ok(()),
+    }
+}
+
+/// Two bodies so fast that one could pass through the other unseen.
+fn passes_through(model: &Model, state: &State, pair: &TooFast) -> StepError {
+    let name = |body: u32| model.bodies[body as usize].name.clone();
+    StepError {
+        step: state.step,
+        time: state.time,
+        body: name(pair.body),
+        particle: Some(pair.particle as usize),
+        quantity: "displacement",
+        value: pair.way,
+        other: Some(name(pair.other)),
+        dt: Some(0.5 * model.dt * pair.limit / pair.way),
+    }
 }
 
 struct Problem {

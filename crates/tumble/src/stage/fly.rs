@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::flight::{Glide, Turn, free_rotation};
-use crate::{BodyModel, BodyState, Model, Scratch, State};
+use crate::{BodyModel, BodyState, Model, Scratch, State, Tally, parallel};
 
 /// Lets the bodies that cannot touch a wall fly the whole time `h` (s) at once.
 pub fn cruise(model: &Model, state: &mut State, scratch: &Scratch, h: f64) {
@@ -16,11 +16,13 @@ pub fn fly(model: &Model, state: &mut State, scratch: &Scratch, h: f64) {
 }
 
 fn fly_those(model: &Model, state: &mut State, scratch: &Scratch, h: f64, near: bool) {
-    for (index, body) in model.bodies.iter().enumerate() {
-        if scratch.near[index] == near && body.is_free() {
-            state.tally.drag += fly_body(model, body, &mut state.bodies[index], h);
+    parallel::tally_bodies(&mut state.tally, &mut state.bodies, |index, body_state| {
+        let body = &model.bodies[index];
+        if scratch.near[index] != near || !body.is_free() {
+            return Tally::default();
         }
-    }
+        Tally { drag: fly_body(model, body, body_state, h), ..Tally::default() }
+    });
 }
 
 /// Lets one body fly; returns the energy that drag takes from it (J).

@@ -1,24 +1,28 @@
 //! The kick: contact forces change the momenta of bodies that stand still for it.
 
 use super::contact::Placed;
-use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally};
+use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally, parallel};
 
 /// v ← v + F h/M, L ← L + τ h, with the contact forces of [`contact`](super::contact()) and [`meet`](super::meet()) over the time
 /// `h` (s).
 pub fn kick(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
-    for (index, body) in model.bodies.iter().enumerate() {
-        let forces = &scratch.forces[index];
+    let Scratch { forces, near, springs, meeting, .. } = scratch;
+    let (forces, near) = (&*forces, &*near);
+    parallel::tally_bodies(&mut state.tally, &mut state.bodies, |index, body_state| {
+        let (body, forces) = (&model.bodies[index], &forces[index]);
         if !body.is_free() {
-            state.tally += resist(body, &state.bodies[index], forces, h);
-            continue;
+            resist(body, body_state, forces, h)
+        } else if near[index] {
+            kick_body(body, body_state, forces, h)
+        } else {
+            Tally::default()
         }
-        if !scratch.near[index] {
-            continue;
-        }
-        state.tally += kick_body(body, &mut state.bodies[index], forces, h);
-        std::mem::swap(&mut state.springs[index], &mut scratch.springs[index]);
+    });
+    // the springs of who flies are left alone: there are none
+    for (index, springs) in springs.iter_mut().enumerate().filter(|(index, _)| near[*index]) {
+        std::mem::swap(&mut state.springs[index], springs);
     }
-    scratch.meeting.keep(model, &mut state.pair_springs);
+    meeting.keep(model, &mut state.pair_springs);
 }
 
 /// Kicks one body; returns what its contacts lost.

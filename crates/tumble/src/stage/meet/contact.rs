@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::pose::Pose;
-use crate::{ContactLaw, Wrench};
+use crate::{ContactKind, ContactLaw, Wrench};
 
 /// Where two bodies touch, or a sphere and a wall.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +16,10 @@ pub(super) struct Contact {
     pub arm: DVec3,
     /// From the centre of mass of the second body to the same point (m).
     pub other_arm: DVec3,
+    /// From the centre of the sphere of the first body to the point, against n (m).
+    pub offset: f64,
+    /// From the centre of the sphere of the second body to the point, along n (m).
+    pub other_offset: f64,
     /// Stretch of the tangential spring at the latest kick, turned with the contact (m).
     pub before: DVec3,
     /// Its stretch now, before the limit (m).
@@ -74,26 +78,53 @@ impl Couple {
 impl Contact {
     /// Velocity of the first body against the second at the point of contact (m/s).
     #[inline(always)]
-    pub fn relative_velocity(&self, first: &Pose, second: &Pose) -> DVec3 {
+    fn relative_velocity(&self, first: &Pose, second: &Pose) -> DVec3 {
+        let apart = first.velocity_at(self.arm) - second.velocity_at(self.other_arm);
+        apart + self.belt(first, second)
+    }
+
+    /// What moving surfaces add to that (m/s).
+    #[inline(always)]
+    fn belt(&self, first: &Pose, second: &Pose) -> DVec3 {
         let belt = first.belt - second.belt;
-        let belt = belt - self.normal * belt.dot(self.normal);
-        first.velocity_at(self.arm) - second.velocity_at(self.other_arm) + belt
+        belt - self.normal * belt.dot(self.normal)
     }
 
     /// Carries the tangential spring on over the time `h` (s) since the latest kick: it turns with the normal and with the
-    /// spin that both bodies share about it, keeps its length, and stretches by the way of the one against the other.
-    pub fn carry(&mut self, first: &Pose, second: &Pose, h: f64) {
+    /// surface that holds it, keeps its length, and stretches by the way of the one body against the other,
+    /// with velocity and arms as they were in the middle of that time.
+    pub fn carry(&mut self, kind: ContactKind, first: &Pose, second: &Pose, h: f64) {
         let n = self.normal;
+        let (w, other_w) = (first.drift_spin, second.drift_spin);
         if self.before != DVec3::ZERO {
-            let spin = 0.5 * (first.angular_velocity + second.angular_velocity).dot(n) * h;
-            let turned = self.before + n.cross(self.before) * spin;
+            let spin = match kind {
+                ContactKind::Wall => 0.0,
+                ContactKind::FirstInSecond => other_w.dot(n),
+                ContactKind::SecondInFirst => w.dot(n),
+                ContactKind::Spheres => 0.5 * (w + other_w).dot(n),
+            };
+            let turned = self.before + n.cross(self.before) * (spin * h);
             let along = turned - n * turned.dot(n);
             let length = along.length();
             // a normal that turned by a right angle leaves nothing to keep
             let scale = if length > 0.0 { self.before.length() / length } else { 0.0 };
             self.before = along * scale;
         }
-        let u = self.relative_velocity(first, second);
+        // spheres turn with their bodies; of a mesh, the place where the other is counts
+        let back = |w: DVec3, arm: DVec3| w.cross(arm) * (-0.5 * h);
+        let mut arm = self.arm + back(w, self.arm + n * self.offset);
+        let mut other_arm = self.other_arm + back(other_w, self.other_arm - n * self.other_offset);
+        let apart = first.drift_velocity - second.drift_velocity;
+        match kind {
+            ContactKind::Wall | ContactKind::FirstInSecond => {
+                other_arm = self.other_arm - (apart + w.cross(arm)) * (0.5 * h);
+            }
+            ContactKind::SecondInFirst => {
+                arm = self.arm + (apart - other_w.cross(other_arm)) * (0.5 * h);
+            }
+            ContactKind::Spheres => {}
+        }
+        let u = apart + w.cross(arm) - other_w.cross(other_arm) + self.belt(first, second);
         self.stretch = self.before + (u - n * u.dot(n)) * h;
     }
 

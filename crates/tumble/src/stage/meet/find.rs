@@ -8,7 +8,7 @@ use super::contact::{Contact, PairForces};
 use super::list::{self, Near, Pair, Point};
 use super::pose::Pose;
 use crate::parallel::CHUNK;
-use crate::{ContactKind, Model, PairSpring};
+use crate::{BodyModel, ContactKind, Model, PairSpring};
 
 /// The contacts of the bodies of one chunk, as first bodies.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +23,23 @@ pub(super) struct Found {
     pub released: Vec<f64>,
     /// The springs that go on.
     pub springs: Vec<PairSpring>,
+    /// The first pair that is so fast that one could pass through the other in a step.
+    pub too_fast: Option<TooFast>,
+}
+
+/// Two bodies that could pass through each other in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TooFast {
+    /// The body whose particle it is.
+    pub body: u32,
+    /// Which particle.
+    pub particle: u32,
+    /// The other body.
+    pub other: u32,
+    /// How far it comes in a step (m).
+    pub way: f64,
+    /// How far it may come (m).
+    pub limit: f64,
 }
 
 /// A pair that has no contact.
@@ -58,6 +75,7 @@ impl Found {
         self.number.clear();
         self.number.resize(near.pairs.len(), NONE);
         self.released.clear();
+        self.too_fast = None;
         self.released.resize(CHUNK, 0.0);
         let since = old.partition_point(|spring| (spring.first as usize) < body);
         let until = old.partition_point(|spring| (spring.first as usize) < body + CHUNK);
@@ -66,19 +84,26 @@ impl Found {
         for (number, pair) in near.pairs.iter_mut().enumerate() {
             let sides = Sides::of(model, poses, pair);
             let travel = sides.travel();
-            if travel < pair.quiet {
+            let way = sides.way(pair);
+            if travel < pair.quiet && way <= pair.limit {
                 continue;
             }
             let start = self.contacts.len();
             let mut quiet = f64::INFINITY;
             for point in &mut near.points[pair.start as usize..pair.end as usize] {
+                if travel + way > point.quiet && way > pair.limit && self.too_fast.is_none() {
+                    self.too_fast = Some(too_fast(model, pair, point, way));
+                }
                 if travel >= point.quiet {
                     match sides.touch(pair, point) {
                         Ok(mut contact) => {
                             point.quiet = 0.0;
                             if pair.law.friction > 0.0 {
-                                contact.before = springs.take(pair, &contact);
-                                contact.carry(sides.first, sides.second, h);
+                                // a new one is held where it is found
+                                if let Some(stretch) = springs.take(pair, &contact) {
+                                    contact.before = stretch;
+                                    contact.carry(pair.kind, sides.first, sides.second, h);
+                                }
                             }
                             self.contacts.push(contact);
                         }
@@ -114,6 +139,21 @@ impl Found {
         }
     }
 
+    /// Energy in the springs (J).
+    pub fn elastic_energy(&self, near: &Near) -> f64 {
+        let of_pair = |touching: &Touching| {
+            let law = &near.pairs[touching.pair as usize].law;
+            let contacts = &self.contacts[touching.start as usize..touching.end as usize];
+            let stored = |contact: &Contact| {
+                law.stiffness * contact.depth * contact.depth
+                    + law.friction_spring * contact.stretch.length_squared()
+            };
+            0.5 * contacts.iter().map(stored).sum::<f64>()
+        };
+        // springs that have come loose are released at the next kick
+        self.touching.iter().map(of_pair).sum::<f64>() + self.released.iter().sum::<f64>()
+    }
+
     /// The springs that go on after the latest push.
     pub fn keep(&mut self, near: &Near, model: &Model) {
         self.springs.clear();
@@ -127,6 +167,16 @@ impl Found {
             }
         }
     }
+}
+
+/// A pair that is too fast, with one of its points.
+fn too_fast(model: &Model, pair: &Pair, point: &Point, way: f64) -> TooFast {
+    let (body, other) = match pair.kind {
+        ContactKind::SecondInFirst => (pair.second, pair.first),
+        _ => (pair.first, pair.second),
+    };
+    let particle = model.bodies[body as usize].shape.particles().index_in(point.particle);
+    TooFast { body, particle, other, way, limit: pair.limit }
 }
 
 /// The spring of a contact.
@@ -163,6 +213,19 @@ impl<'a> Sides<'a> {
         Self { model, first, second }
     }
 
+    /// How far the one can come against the other in a step (m).
+    fn way(&self, pair: &Pair) -> f64 {
+        let Self { model, first, second } = self;
+        let rim = |pose: &Pose, body: u32| {
+            pose.angular_velocity.length() * model.bodies[body as usize].extent
+        };
+        if pair.limit == f64::INFINITY {
+            return 0.0;
+        }
+        let turning = rim(first, pair.first) + rim(second, pair.second);
+        model.dt * ((first.velocity - second.velocity).length() + turning)
+    }
+
     fn travel(&self) -> f64 {
         self.first.travel + self.second.travel
     }
@@ -196,16 +259,35 @@ impl<'a> Sides<'a> {
                 };
                 (place - normal * (list::radius(a) - 0.5 * depth), normal, depth)
             }
-            ContactKind::FirstInSecond | ContactKind::SecondInFirst => return Err(f64::INFINITY),
+            ContactKind::FirstInSecond => {
+                let b = &model.bodies[pair.second as usize];
+                let (at, out, depth) = touch_mesh(pair, point, (a, p), (b, q))?;
+                (at, out, depth)
+            }
+            ContactKind::SecondInFirst => {
+                let b = &model.bodies[pair.second as usize];
+                let (at, out, depth) = touch_mesh(pair, point, (b, q), (a, p))?;
+                (at, -out, depth)
+            }
         };
         if depth <= 0.0 {
             return Err(-depth);
         }
         let zero = DVec3::ZERO;
+        let (offset, other_offset) = match pair.kind {
+            ContactKind::Wall | ContactKind::FirstInSecond => (pair.reach, 0.0),
+            ContactKind::SecondInFirst => (0.0, pair.reach),
+            ContactKind::Spheres => {
+                let b = &model.bodies[pair.second as usize];
+                (list::radius(a) - 0.5 * depth, list::radius(b) - 0.5 * depth)
+            }
+        };
         Ok(Contact {
             normal,
             depth,
             arm: at - p.position,
+            offset,
+            other_offset,
             other_arm: at - q.position,
             before: zero,
             stretch: zero,
@@ -214,6 +296,27 @@ impl<'a> Sides<'a> {
             other: if pair.kind == ContactKind::Spheres { point.other } else { 0 },
         })
     }
+}
+
+/// Where a particle touches the mesh of a body, the direction out of that, and how deep (m); or how far it is from there (m).
+fn touch_mesh(
+    pair: &Pair,
+    point: &mut Point,
+    (body, pose): (&BodyModel, &Pose),
+    (other, other_pose): (&BodyModel, &Pose),
+) -> Result<(DVec3, DVec3, f64), f64> {
+    let place = pose.place(body, point.particle);
+    let inward = other_pose.rotation.transpose() * (place - other_pose.position);
+    let within = pair.reach + pair.margin;
+    let nearest = other.solid.as_ref().and_then(|solid| solid.query(inward, point.other, within));
+    let Some(nearest) = nearest else { return Err(pair.margin) };
+    point.other = nearest.triangle;
+    let depth = pair.reach - nearest.distance;
+    if depth <= 0.0 {
+        return Err(-depth);
+    }
+    let out = other_pose.rotation * nearest.gradient;
+    Ok((place - out * pair.reach, out, depth))
 }
 
 /// The springs of the latest kick, taken in their order.
@@ -226,19 +329,19 @@ struct OldSprings<'a> {
 
 impl OldSprings<'_> {
     /// The stretch that a contact had at the latest kick; springs that come before it are released.
-    fn take(&mut self, pair: &Pair, contact: &Contact) -> DVec3 {
+    fn take(&mut self, pair: &Pair, contact: &Contact) -> Option<DVec3> {
         while let Some((spring, rest)) = self.old.split_first() {
             match self.compare(spring, pair, contact) {
                 Ordering::Less => self.release(spring),
                 Ordering::Equal => {
                     self.old = rest;
-                    return spring.stretch;
+                    return Some(spring.stretch);
                 }
                 Ordering::Greater => break,
             }
             self.old = rest;
         }
-        DVec3::ZERO
+        None
     }
 
     fn release_all(&mut self) {

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::grid::Grid;
+use super::grid::{Ball, Grid};
 use super::pose::Pose;
 use crate::parallel::{self, CHUNK};
 use crate::{BodyModel, ContactKind, ContactLaw, Model, Surface};
@@ -29,6 +29,10 @@ pub(super) struct Pair {
     pub quiet: f64,
     /// How far apart two particles touch, or a particle and a mesh or wall (m).
     pub reach: f64,
+    /// How much farther apart they were listed (m).
+    pub margin: f64,
+    /// How far one may come against the other in a step without passing through it (m).
+    pub limit: f64,
     pub law: ContactLaw,
 }
 
@@ -62,16 +66,21 @@ pub(super) struct Lists {
     /// Where the entries of each body begin in `seconds`, and an end.
     pub starts: Vec<u32>,
     grid: Grid,
-    pairs: Vec<(u32, u32)>,
+    balls: Vec<Ball>,
 }
 
-/// How far a body may travel before the lists are made anew (m).
-pub(super) fn skin(body: &BodyModel) -> f64 {
-    let grain = match body.surface {
+/// How far a body may travel before the lists are made anew (m): at least the way of two steps, so that what one step could
+/// jump over is listed.
+fn skin(body: &BodyModel, pose: &Pose, h: f64) -> f64 {
+    (SKIN * grain(body)).max(2.0 * h * pose.speed(body))
+}
+
+/// The size of the smallest features of a body that matter (m).
+pub(super) fn grain(body: &BodyModel) -> f64 {
+    match body.surface {
         Surface::Spheres { radius } => radius,
         _ => GRAIN * body.extent,
-    };
-    SKIN * grain
+    }
 }
 
 /// The radius of the spheres of a body; 0 where it has none (m).
@@ -81,24 +90,26 @@ pub(super) fn radius(body: &BodyModel) -> f64 {
 
 impl Lists {
     /// Makes all lists for bodies at `poses`, which have travelled nowhere yet.
-    pub fn make(&mut self, model: &Model, poses: &[Pose]) {
+    pub fn make(&mut self, model: &Model, poses: &mut [Pose]) {
         let bodies = &model.bodies;
-        let ball =
-            |index: usize| (poses[index].position, bodies[index].extent + skin(&bodies[index]));
-        let free = |index: usize| bodies[index].is_free();
-        self.grid.find(bodies.len(), &ball, &free, &mut self.pairs);
+        self.balls.clear();
+        for (body, pose) in bodies.iter().zip(&mut *poses) {
+            pose.skin = skin(body, pose, model.dt);
+            let reach = body.extent + pose.skin;
+            self.balls.push(Ball { centre: pose.position, reach, active: body.is_free() });
+        }
+        let (pairs, poses) = (self.grid.pairs(&self.balls), &*poses);
         self.chunks.resize_with(bodies.len().div_ceil(CHUNK), Near::default);
-        let pairs = &self.pairs;
         parallel::each(&mut self.chunks, |index, near| {
             near.pairs.clear();
             near.points.clear();
             let first = (index * CHUNK) as u32;
             let until = (first + CHUNK as u32).min(bodies.len() as u32);
-            let mut pairs = &pairs[pairs.partition_point(|pair| pair.0 < first)..];
+            let mut pairs = &pairs[pairs.partition_point(|pair| pair[0] < first)..];
             for first in first..until {
                 near.list_walls(model, poses, first);
-                let count = pairs.iter().take_while(|pair| pair.0 == first).count();
-                for &(_, second) in &pairs[..count] {
+                let count = pairs.iter().take_while(|pair| pair[0] == first).count();
+                for &[_, second] in &pairs[..count] {
                     near.list_bodies(model, poses, first, second);
                 }
                 pairs = &pairs[count..];
@@ -147,12 +158,12 @@ impl Near {
             return;
         }
         for (number, (wall, law)) in model.walls.iter().zip(&body.contacts).enumerate() {
-            if wall.depth(pose.position) < -(body.extent + skin(body)) {
+            if wall.depth(pose.position) < -(body.extent + pose.skin) {
                 continue;
             }
             let start = self.points.len() as u32;
             for slot in 0..body.shape.particles().len() as u32 {
-                if wall.depth(pose.place(body, slot)) > -(radius + skin(body)) {
+                if wall.depth(pose.place(body, slot)) > -(radius + pose.skin) {
                     self.points.push(Point { particle: slot, other: 0, quiet: 0.0 });
                 }
             }
@@ -164,6 +175,8 @@ impl Near {
                 end: 0,
                 quiet: 0.0,
                 reach: radius,
+                margin: pose.skin,
+                limit: f64::INFINITY,
                 law: *law,
             };
             self.add(pair);
@@ -184,7 +197,20 @@ impl Near {
                 ContactKind::SecondInFirst => self.list_particles(b, a),
             }
             let (law, reach) = (law(a.body, b.body, kind), reach(a.body, b.body, kind));
-            self.add(Pair { first, second, kind, start, end: 0, quiet: 0.0, reach, law });
+            let margin = a.pose.skin + b.pose.skin;
+            let limit = limit(a.body, b.body, kind);
+            self.add(Pair {
+                first,
+                second,
+                kind,
+                start,
+                end: 0,
+                quiet: 0.0,
+                reach,
+                margin,
+                limit,
+                law,
+            });
         }
     }
 
@@ -198,16 +224,17 @@ impl Near {
 
     /// Spheres of two bodies that are near each other.
     fn list_spheres(&mut self, a: Side, b: Side) {
-        let margin = skin(a.body) + skin(b.body);
+        let margin = a.pose.skin + b.pose.skin;
+        let reach = radius(a.body) + radius(b.body);
         let [mut ours, mut theirs] = std::mem::take(&mut self.slots);
-        a.list_near(b.pose.position, b.body.extent + radius(a.body) + margin, &mut ours);
-        b.list_near(a.pose.position, a.body.extent + radius(b.body) + margin, &mut theirs);
-        let reach = radius(a.body) + radius(b.body) + margin;
-        for &i in &ours {
-            let place = a.pose.place(a.body, i);
-            for &j in &theirs {
-                if place.distance_squared(b.pose.place(b.body, j)) < reach * reach {
-                    self.points.push(Point { particle: i, other: j, quiet: 0.0 });
+        a.list_near(b, reach + margin, &mut ours);
+        b.list_near(a, reach + margin, &mut theirs);
+        for &particle in &ours {
+            let place = a.pose.place(a.body, particle);
+            for &other in &theirs {
+                let gap = place.distance(b.pose.place(b.body, other)) - reach;
+                if gap < margin {
+                    self.points.push(Point { particle, other, quiet: gap.max(0.0) });
                 }
             }
         }
@@ -215,7 +242,29 @@ impl Near {
     }
 
     /// Particles of `a` that are near the mesh of `b`.
-    fn list_particles(&mut self, _a: Side, _b: Side) {}
+    fn list_particles(&mut self, a: Side, b: Side) {
+        let Some(solid) = &b.body.solid else { return };
+        let (margin, reach) = (a.pose.skin + b.pose.skin, radius(a.body));
+        // places of the frame of `a` in the frame of `b`
+        let turn = b.pose.rotation.transpose() * a.pose.rotation;
+        let way = b.pose.rotation.transpose() * (a.pose.position - b.pose.position);
+        let [mut slots, other] = std::mem::take(&mut self.slots);
+        slots.clear();
+        let particles = a.body.shape.particles();
+        let may_touch =
+            |centre, radius| !solid.outside_ball(way + turn * centre, radius + reach + margin);
+        particles.list_where(may_touch, &mut slots);
+        let mut hint = 0;
+        for &particle in &slots {
+            let place = way + turn * particles.at(particle);
+            if let Some(nearest) = solid.query(place, hint, reach + margin) {
+                hint = nearest.triangle;
+                let quiet = (nearest.distance - reach).max(0.0);
+                self.points.push(Point { particle, other: hint, quiet });
+            }
+        }
+        self.slots = [slots, other];
+    }
 }
 
 /// A body where it is.
@@ -226,11 +275,15 @@ struct Side<'a> {
 }
 
 impl Side<'_> {
-    /// The particles within `distance` (m) of a place, by slot in their order.
-    fn list_near(&self, place: DVec3, distance: f64, slots: &mut Vec<u32>) {
+    /// The particles within `distance` (m) of the ball about the particles of another body, by slot in their order.
+    fn list_near(&self, other: Side, distance: f64, slots: &mut Vec<u32>) {
         slots.clear();
-        let inward = self.pose.rotation.transpose() * (place - self.pose.position);
-        self.body.shape.particles().list_within(inward, distance, slots);
+        let place = self.pose.rotation.transpose() * (other.pose.position - self.pose.position);
+        let reach = other.body.shape.radius() + distance;
+        let particles = self.body.shape.particles();
+        let near = |at: DVec3, reach: f64| at.distance_squared(place) <= reach * reach;
+        particles.list_where(|centre, radius| near(centre, radius + reach), slots);
+        slots.retain(|&slot| near(particles.at(slot), reach));
     }
 }
 
@@ -261,5 +314,16 @@ fn reach(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> f64 {
         ContactKind::Wall | ContactKind::FirstInSecond => radius(first),
         ContactKind::SecondInFirst => radius(second),
         ContactKind::Spheres => radius(first) + radius(second),
+    }
+}
+
+/// How far one body may come against the other in a step (m): half of what it would have to pass through.
+fn limit(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> f64 {
+    let thickness = |body: &BodyModel| body.solid.as_ref().map_or(0.0, |solid| solid.thickness());
+    match kind {
+        ContactKind::Wall => f64::INFINITY,
+        ContactKind::Spheres => radius(first) + radius(second),
+        ContactKind::FirstInSecond => radius(first) + 0.5 * thickness(second),
+        ContactKind::SecondInFirst => radius(second) + 0.5 * thickness(first),
     }
 }

@@ -13,11 +13,12 @@ mod list;
 mod pose;
 
 use self::find::Found;
+pub(crate) use self::find::TooFast;
 use self::gather::BodySum;
 use self::list::Lists;
 use self::pose::Pose;
 use crate::parallel::{self, CHUNK};
-use crate::{BodyModel, Integrator, Model, PairSpring, Scratch, State};
+use crate::{BodyModel, ContactKind, Integrator, Model, PairSpring, Scratch, State};
 
 /// Room for contacts between bodies. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -51,6 +52,36 @@ pub fn meet(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     meeting.give(&mut scratch.forces);
 }
 
+/// Pairs of bodies that are deeper in each other (m) than a tenth of what their skins are measured by.
+pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<(u32, u32, f64)> {
+    if !model.meets {
+        return Vec::new();
+    }
+    let mut meeting = Meeting::default();
+    meeting.place(model, state);
+    meeting.find(model, &[], 0.0);
+    let mut overlaps = Vec::new();
+    for (found, near) in meeting.found.iter().zip(&meeting.lists.chunks) {
+        for touching in &found.touching {
+            let pair = &near.pairs[touching.pair as usize];
+            if pair.kind == ContactKind::Wall {
+                continue;
+            }
+            let contacts = &found.contacts[touching.start as usize..touching.end as usize];
+            let depth = contacts.iter().fold(0.0f64, |depth, contact| depth.max(contact.depth));
+            let grain = |body: u32| list::grain(&model.bodies[body as usize]);
+            if depth > DEEP * grain(pair.first).min(grain(pair.second)) {
+                overlaps.push((pair.first, pair.second, depth));
+            }
+        }
+    }
+    overlaps.dedup_by_key(|overlap| (overlap.0, overlap.1));
+    overlaps
+}
+
+/// Bodies that start deeper in each other than this part of their grain were put there by mistake.
+const DEEP: f64 = 0.1;
+
 impl Meeting {
     /// Puts the bodies where they are, and makes the lists anew where they no longer hold.
     fn place(&mut self, model: &Model, state: &State) {
@@ -59,18 +90,16 @@ impl Meeting {
         if known {
             parallel::each_body(&mut self.poses, |first, poses| {
                 for (index, pose) in (first..).zip(poses) {
-                    *pose = pose.moved(&bodies[index], &state.bodies[index]);
+                    *pose = pose.moved(model, index, &state.bodies[index]);
                 }
             });
         }
-        let hold =
-            || self.poses.iter().zip(bodies).all(|(pose, body)| pose.travel <= list::skin(body));
+        let hold = || self.poses.iter().all(|pose| pose.travel <= pose.skin);
         if !known || !hold() {
             self.poses.clear();
-            self.poses.extend(
-                bodies.iter().zip(&state.bodies).map(|(body, state)| Pose::new(body, state)),
-            );
-            self.lists.make(model, &self.poses);
+            let states = state.bodies.iter().enumerate();
+            self.poses.extend(states.map(|(index, state)| Pose::new(model, index, state)));
+            self.lists.make(model, &mut self.poses);
         }
     }
 
@@ -85,6 +114,27 @@ impl Meeting {
     fn push(&mut self) {
         let (poses, chunks) = (&self.poses, &self.lists.chunks);
         parallel::each(&mut self.found, |index, found| found.push(&chunks[index], poses));
+    }
+
+    /// Energy in the springs between bodies and between spheres and walls, normal and tangential (J).
+    pub fn elastic_energy(&mut self, model: &Model, state: &State) -> f64 {
+        if !model.meets {
+            return 0.0;
+        }
+        // since the latest kick the tangential springs have stretched on
+        let since = match model.integrator {
+            Integrator::Splitting => 0.5 * model.dt,
+            Integrator::Euler => model.dt,
+        };
+        self.place(model, state);
+        self.find(model, &state.pair_springs, since);
+        let chunks = self.found.iter().zip(&self.lists.chunks);
+        chunks.map(|(found, near)| found.elastic_energy(near)).sum()
+    }
+
+    /// The first two bodies that could pass through each other in a step.
+    pub fn too_fast(&self) -> Option<TooFast> {
+        self.found.iter().find_map(|found| found.too_fast)
     }
 
     /// The springs that go on after the latest push.

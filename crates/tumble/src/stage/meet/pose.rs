@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::{BodyModel, BodyState, Motion};
+use crate::{BodyModel, BodyState, Integrator, Model, Motion};
 
 /// A body at one place, with the velocities that its contacts are to feel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -11,46 +11,72 @@ pub(super) struct Pose {
     pub rotation: DMat3,
     pub velocity: DVec3,
     pub angular_velocity: DVec3,
+    /// Velocity and angular velocity in the middle of the flight since the latest kick.
+    pub drift_velocity: DVec3,
+    pub drift_spin: DVec3,
     /// Velocity of the surface along itself (m/s).
     pub belt: DVec3,
     orientation: DQuat,
     /// No point of the body has come farther than this (m) since the lists were made.
     pub travel: f64,
+    /// How far it may come before they are made anew (m).
+    pub skin: f64,
 }
 
 impl Pose {
     /// At a state, its travel counted from here.
-    pub fn new(body: &BodyModel, state: &BodyState) -> Self {
+    pub fn new(model: &Model, index: usize, state: &BodyState) -> Self {
+        let body = &model.bodies[index];
         let rotation = DMat3::from_quat(state.orientation);
         let belt = match &body.motion {
             Motion::Prescribed(given) => rotation * given.surface_velocity,
             Motion::Free => DVec3::ZERO,
         };
+        let omega = body.angular_velocity(rotation, state.angular_momentum);
+        let (mut drift_velocity, mut drift_spin) = (state.velocity, omega);
+        // under `splitting` the latest flight took a whole step, with v' = g − γ v and ω' = −I⁻¹ (ω × L) without drag
+        if model.integrator == Integrator::Splitting && body.is_free() {
+            let half = 0.5 * model.dt;
+            let rate = model.velocity_damping_stiffness / body.particle_mass();
+            drift_velocity -= (model.gravity - state.velocity * rate) * half;
+            let twist = omega.cross(state.angular_momentum);
+            drift_spin += body.angular_velocity(rotation, twist) * half;
+        }
         Self {
+            drift_velocity,
+            drift_spin,
             position: state.position,
             rotation,
             velocity: state.velocity,
-            angular_velocity: body.angular_velocity(rotation, state.angular_momentum),
+            angular_velocity: omega,
             belt,
             orientation: state.orientation,
             travel: 0.0,
+            skin: 0.0,
         }
     }
 
     /// At another state, as far as the way there is.
-    pub fn moved(&self, body: &BodyModel, state: &BodyState) -> Self {
+    pub fn moved(&self, model: &Model, index: usize, state: &BodyState) -> Self {
+        let body = &model.bodies[index];
         let turn = state.orientation * self.orientation.conjugate();
         // a turn by θ takes a point at r by 2 r sin(θ/2)
         let way = (state.position - self.position).length()
             + 2.0 * body.extent * DVec3::new(turn.x, turn.y, turn.z).length();
         // what rounding may hide
-        Self { travel: self.travel + way * (1.0 + 1e-9), ..Self::new(body, state) }
+        let travel = self.travel + way * (1.0 + 1e-9);
+        Self { travel, skin: self.skin, ..Self::new(model, index, state) }
     }
 
     /// The place of a particle.
     #[inline(always)]
     pub fn place(&self, body: &BodyModel, slot: u32) -> DVec3 {
         self.position + self.rotation * body.shape.particles().at(slot)
+    }
+
+    /// No point of the body is faster than this (m/s).
+    pub fn speed(&self, body: &BodyModel) -> f64 {
+        self.velocity.length() + self.angular_velocity.length() * body.extent
     }
 
     /// The velocity of the body at an arm from its centre of mass.
