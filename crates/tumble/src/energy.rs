@@ -18,6 +18,8 @@ pub struct Energy {
     pub dashpot: f64,
     /// Lost so far to slip against friction.
     pub slip: f64,
+    /// What bodies whose motion is prescribed have put in so far.
+    pub work: f64,
 }
 
 impl Energy {
@@ -27,6 +29,7 @@ impl Energy {
             drag: state.tally.drag,
             dashpot: state.tally.dashpot,
             slip: state.tally.slip,
+            work: state.tally.work,
             ..Self::default()
         };
         for (index, body) in model.bodies.iter().enumerate() {
@@ -39,8 +42,9 @@ impl Energy {
         energy
     }
 
-    /// The sum of all columns. It keeps its first value, but for the integrator's error.
+    /// The sum of all columns, less the work put in. It keeps its first value, but for the integrator's error.
     pub fn total(&self) -> f64 {
         self.kinetic + self.gravitational + self.elastic + self.drag + self.dashpot + self.slip
+            - self.work
     }
 }

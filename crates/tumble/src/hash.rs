@@ -2,13 +2,14 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::State;
+use crate::{PairSpring, State};
 
 impl State {
     /// The first 16 bytes of the SHA-256 of the state as little-endian numbers, in hexadecimal:
     /// step, time, then position, velocity, orientation (w, x, y, z) and its rest, angular momentum and
     /// energy owed of each
-    /// body with its friction springs, then the tally. Two runs agree to the last bit when, and only when, their hashes do.
+    /// body with its friction springs, then the friction springs between bodies, then the tally (with its work unless that is
+    /// zero). Two runs agree to the last bit when, and only when, their hashes do.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();
         let mut put = |value: f64| hasher.update(value.to_le_bytes());
@@ -30,7 +31,17 @@ impl State {
                 spring.stretch.to_array().into_iter().for_each(&mut put);
             }
         }
+        for spring in &self.pair_springs {
+            let PairSpring { first, second, kind, particle, other, stretch } = *spring;
+            for number in [first, second, kind as u32, particle, other] {
+                put(f64::from(number));
+            }
+            stretch.to_array().into_iter().for_each(&mut put);
+        }
         let tally = &self.tally;
+        if tally.work != 0.0 {
+            put(tally.work);
+        }
         [tally.drag, tally.dashpot, tally.slip, tally.max_depth].into_iter().for_each(&mut put);
         put(f64::from_bits(tally.evaluations));
         hasher.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()

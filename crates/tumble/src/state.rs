@@ -14,6 +14,9 @@ pub struct State {
     /// The friction springs of each body, sorted by wall, those of a wall in the order in which the shape
     /// keeps its particles.
     pub springs: Vec<Vec<FrictionSpring>>,
+    /// The friction springs between bodies, and between spheres and walls, in their order
+    /// ([`PairSpring`]).
+    pub pair_springs: Vec<PairSpring>,
     /// What the run has lost or met so far.
     pub tally: Tally,
 }
@@ -68,6 +71,41 @@ pub struct FrictionSpring {
     pub stretch: DVec3,
 }
 
+/// The tangential spring of one contact between two bodies, or between a sphere of a body and a wall.
+///
+/// They are sorted by the first body, its walls before the other bodies, the second body, the kind, the particle and the
+/// other particle, particles in the order in which the shape keeps them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairSpring {
+    /// Which body; of two the one with the lower index.
+    pub first: u32,
+    /// Which other body, or which wall.
+    pub second: u32,
+    /// What touches what.
+    pub kind: ContactKind,
+    /// Which particle touches: of `second` where the kind is [`ContactKind::SecondInFirst`], else of `first`.
+    pub particle: u32,
+    /// Which particle of `second` it touches, where the kind is [`ContactKind::Spheres`]; else 0.
+    pub other: u32,
+    /// Its stretch at the latest kick (m), along the contact, world axes: how far the first body has come with respect to
+    /// the second.
+    pub stretch: DVec3,
+}
+
+/// What touches what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum ContactKind {
+    /// A sphere of the first body a wall.
+    Wall,
+    /// A sphere or particle of the first body one of the second.
+    Spheres,
+    /// A sphere or particle of the first body the mesh of the second.
+    FirstInSecond,
+    /// A sphere or particle of the second body the mesh of the first.
+    SecondInFirst,
+}
+
 /// Sums and extremes over the steps taken so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tally {
@@ -77,6 +115,8 @@ pub struct Tally {
     pub dashpot: f64,
     /// Energy lost to slip against friction (J).
     pub slip: f64,
+    /// Work that bodies whose motion is prescribed have done on the others (J).
+    pub work: f64,
     /// Deepest contact met so far (m).
     pub max_depth: f64,
     /// How often contact forces kicked a body: what contact has cost.
@@ -95,6 +135,7 @@ impl std::ops::AddAssign for Tally {
         self.drag += more.drag;
         self.dashpot += more.dashpot;
         self.slip += more.slip;
+        self.work += more.work;
         self.max_depth = self.max_depth.max(more.max_depth);
         self.evaluations += more.evaluations;
     }

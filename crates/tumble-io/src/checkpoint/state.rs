@@ -11,7 +11,7 @@ const SPRING: usize = 4 + 4 + 6 * 8;
 
 pub(super) fn bytes(state: &State) -> Vec<u8> {
     // taken apart to the last field: one that is added later cannot be forgotten here
-    let State { step, time, bodies, springs, tally } = state;
+    let State { step, time, bodies, springs, tally, .. } = state;
     let spring_count: usize = springs.iter().map(Vec::len).sum();
     let mut out = Vec::with_capacity(64 + bodies.len() * (BODY + 8) + spring_count * SPRING);
     out.extend(step.to_le_bytes());
@@ -43,7 +43,7 @@ pub(super) fn bytes(state: &State) -> Vec<u8> {
             put(&mut out, stretch.to_array());
         }
     }
-    let Tally { drag, dashpot, slip, max_depth, evaluations } = *tally;
+    let Tally { drag, dashpot, slip, max_depth, evaluations, .. } = *tally;
     put(&mut out, [drag, dashpot, slip, max_depth]);
     out.extend(evaluations.to_le_bytes());
     out
@@ -65,8 +65,10 @@ pub(super) fn parse(mut from: Bytes) -> Option<State> {
         slip: from.f64()?,
         max_depth: from.f64()?,
         evaluations: from.u64()?,
+        ..Tally::default()
     };
-    from.is_empty().then_some(State { step, time, bodies, springs, tally })
+    let pair_springs = Vec::new();
+    from.is_empty().then_some(State { step, time, bodies, springs, pair_springs, tally })
 }
 
 fn body(from: &mut Bytes) -> Option<BodyState> {

@@ -169,10 +169,11 @@ fn notes(scene: &Scene) -> Vec<&'static str> {
 
 /// A copy, in the room of the one before.
 fn keep(kept: &mut State, state: &State) {
-    let State { step, time, bodies, springs, tally } = state;
+    let State { step, time, bodies, springs, pair_springs, tally } = state;
     (kept.step, kept.time, kept.tally) = (*step, *time, *tally);
     kept.bodies.clone_from(bodies);
     kept.springs.clone_from(springs);
+    kept.pair_springs.clone_from(pair_springs);
 }
 
 /// Steps between two looks at the clock: some hundred thousand particles' worth.
