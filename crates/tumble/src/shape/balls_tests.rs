@@ -1,6 +1,4 @@
 use super::*;
-use std::f64::consts::PI;
-
 const BALL: f64 = 4.0 / 3.0 * PI;
 
 fn largest(m: DMat3) -> f64 {
@@ -39,7 +37,7 @@ fn two_balls_that_overlap_lack_a_lens() {
             // the textbook's lens: π (4 + d) (2 − d)² / 12
             let volume = 2.0 * BALL - PI * (4.0 + distance) * (2.0 - distance).powi(2) / 12.0;
             worst = worst.max((found.measure / volume - 1.0).abs());
-            assert!((found.centre - 0.5 * distance * axis).length() < 1e-12);
+            assert!((found.centre - 0.5 * distance * axis).length() < 1e-9);
             // about the middle, along the axis
             let h = distance / 2.0;
             let (v, first, second) = cap_integrals(h);
@@ -48,7 +46,7 @@ fn two_balls_that_overlap_lack_a_lens() {
             worst = worst.max((measured / along - 1.0).abs());
         }
     }
-    assert!(worst < 3e-5, "{worst:e}");
+    assert!(worst < 2e-5, "{worst:e}");
 }
 
 #[test]
@@ -61,12 +59,12 @@ fn a_clump_of_the_corners_of_a_cube() {
     let found = ball_integrals(&corners, radius).unwrap();
     let lens = PI * (4.0 + distance) * (2.0f64 - distance).powi(2) / 12.0;
     let volume = (8.0 * BALL - 12.0 * lens) * radius.powi(3);
-    assert!((found.measure / volume - 1.0).abs() < 3e-5, "{}", found.measure / volume - 1.0);
-    assert!((found.centre - DVec3::splat(0.15)).length() < 1e-15);
+    assert!((found.measure / volume - 1.0).abs() < 1e-6, "{}", found.measure / volume - 1.0);
+    assert!((found.centre - DVec3::splat(0.15)).length() < 1e-7);
     // as round as the cube itself
     let moments = found.second_moment;
     let off = moments - DMat3::IDENTITY * moments.x_axis.x;
-    assert!(largest(off) < 1e-14 * moments.x_axis.x, "{moments}");
+    assert!(largest(off) < 1e-5 * moments.x_axis.x, "{moments}");
 }
 
 #[test]
@@ -79,7 +77,7 @@ fn balls_within_each_other_and_twice_the_same_weigh_once() {
         .map(|i| 1e-9 * DVec3::new(f64::from(i), f64::from(i % 5), f64::from(i % 3)))
         .collect();
     let close = ball_integrals(&ring, 2.0).unwrap();
-    assert!((close.measure / one.measure - 1.0).abs() < 1e-4);
+    assert!((close.measure / one.measure - 1.0).abs() < 1e-5);
 }
 
 #[test]
@@ -88,7 +86,7 @@ fn of_a_row_each_ball_shares_a_lens_with_the_next() {
     let found = ball_integrals(&row, 1.0).unwrap();
     let lens = PI * 4.5 * 1.5f64.powi(2) / 12.0;
     let volume = 21.0 * BALL - 20.0 * lens;
-    assert!((found.measure / volume - 1.0).abs() < 1e-4, "{}", found.measure / volume - 1.0);
+    assert!((found.measure / volume - 1.0).abs() < 1e-8, "{}", found.measure / volume - 1.0);
     assert!((found.centre - DVec3::new(1e3, 0.0, 5.0)).length() < 1e-9);
 }
 
@@ -97,7 +95,7 @@ fn what_takes_too_long_or_is_out_of_range_is_refused() {
     let crowd: Vec<DVec3> = (0..2000).map(|i| DVec3::X * 1e-4 * f64::from(i)).collect();
     let error = ball_integrals(&crowd, 1.0).unwrap_err();
     assert_eq!(error, BallsError::TooManyOverlaps { balls: 2000 });
-    assert!(error.to_string().contains("overlap more than 125000 times"), "{error}");
+    assert!(error.to_string().contains("overlap more than 25000 times"), "{error}");
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-70, 1e70] {
         assert!(matches!(ball_integrals(&crowd, radius), Err(BallsError::Radius { .. })));
     }
@@ -105,4 +103,27 @@ fn what_takes_too_long_or_is_out_of_range_is_refused() {
     let far = [DVec3::ZERO, DVec3::X * 1e30, DVec3::X * -1e30, DVec3::new(1e30, 1.0, 0.0)];
     let found = ball_integrals(&far, 1.0).unwrap();
     assert!(found.second_moment.is_finite());
+}
+
+#[test]
+fn of_dense_rows_and_blocks_the_crossings_may_be_left_out() {
+    // twenty neighbours each, all about one axis and about none of z's
+    let axis = DVec3::new(0.6, 0.48, 0.64);
+    let row: Vec<DVec3> = (0..60).map(|i| axis * 0.19 * f64::from(i)).collect();
+    let found = ball_integrals(&row, 1.0).unwrap();
+    let lens = PI * 4.19 * 1.81f64.powi(2) / 12.0;
+    let volume = 60.0 * BALL - 59.0 * lens;
+    assert!((found.measure / volume - 1.0).abs() < 1e-4, "{}", found.measure / volume - 1.0);
+    // a block in two places, turned: as large, with the same moments
+    let block = |turn: glam::DQuat, shift: DVec3| {
+        let place = |i: i32| DVec3::new(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9));
+        let places: Vec<DVec3> = (0..27).map(|i| turn * (place(i) * 0.8) + shift).collect();
+        ball_integrals(&places, 1.0).unwrap()
+    };
+    let here = block(glam::DQuat::IDENTITY, DVec3::ZERO);
+    let there = block(glam::DQuat::from_xyzw(0.1, 0.5, -0.3, 0.8).normalize(), DVec3::X * 50.0);
+    assert!((here.measure / there.measure - 1.0).abs() < 1e-4);
+    let trace = |i: &Integrals| i.second_moment.to_cols_array_2d();
+    let sum = |m: [[f64; 3]; 3]| m[0][0] + m[1][1] + m[2][2];
+    assert!((sum(trace(&here)) / sum(trace(&there)) - 1.0).abs() < 1e-4);
 }
