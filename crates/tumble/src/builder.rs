@@ -6,8 +6,8 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::{
     BodyModel, BodyState, BuildError, BuildErrors, ContactLaw, Damping, DragModes, Integrator,
-    Material, MaterialOverride, Model, Motion, Shape, State, Surface, WallBox, WallPlane, World,
-    critical_dt,
+    Material, MaterialOverride, Model, Motion, PairMaterial, Shape, State, Surface, WallBox,
+    WallPlane, World, critical_dt,
 };
 
 /// A body as a user describes it.
@@ -221,6 +221,7 @@ impl WorldBuilder {
             energy_tolerance: self.energy_tolerance,
             walls: self.walls.iter().map(|(wall, _)| *wall).collect(),
             gap: smallest_gap(&self.walls),
+            meets: self.bodies.iter().any(|body| body.surface != Surface::None),
             bodies: Vec::with_capacity(self.bodies.len()),
         };
         let mut state = State::default();
@@ -305,7 +306,10 @@ impl WorldBuilder {
                 allowed,
             });
         }
-        let particle_mass = mass / body.shape.moments().count;
+        let (is_free, has_spheres) =
+            (body.motion == Motion::Free, matches!(body.surface, Surface::Spheres { .. }));
+        // a body of spheres touches with one of them at a time
+        let particle_mass = if has_spheres { mass } else { mass / body.shape.moments().count };
         let contact = |(_, wall): &(_, MaterialOverride)| {
             self.material.between(*wall, body.material).law(particle_mass)
         };
@@ -320,6 +324,12 @@ impl WorldBuilder {
             inverse_inertia,
             inverse_moments: DVec3::from_array(inverse_moments),
             drag_modes: DragModes::of(&body.shape, mass),
+            pair_material: PairMaterial::new(
+                &body.material.over(self.material),
+                if is_free { 1.0 / mass } else { 0.0 },
+                if has_spheres { 1.0 } else { body.shape.moments().count },
+            ),
+            extent: extent(&body.shape, body.surface),
             has_friction: contacts.iter().any(|law| law.friction > 0.0),
             is_damped: contacts.iter().any(ContactLaw::is_damped),
             contacts,
@@ -327,6 +337,19 @@ impl WorldBuilder {
             motion: body.motion,
         })
     }
+}
+
+/// How far particles, spheres and mesh reach from the centre of mass (m), whatever rounding does.
+fn extent(shape: &Shape, surface: Surface) -> f64 {
+    let reach = match surface {
+        Surface::None => shape.radius(),
+        Surface::Spheres { radius } => shape.radius() + radius,
+        Surface::Mesh => {
+            let vertices = shape.surface().vertices.iter();
+            vertices.fold(shape.radius(), |reach, vertex| reach.max(vertex.length()))
+        }
+    };
+    reach * (1.0 + 1e-9)
 }
 
 /// The smallest distance between two walls that face each other with room between them (m).

@@ -35,6 +35,9 @@ impl Energy {
         for (index, body) in model.bodies.iter().enumerate() {
             let s = &state.bodies[index];
             let place = Placed::new(body, s);
+            if !body.is_free() {
+                continue;
+            }
             energy.kinetic += place.kinetic_energy(s.angular_momentum);
             energy.gravitational -= body.mass * model.gravity.dot(s.position);
             energy.elastic += place.elastic_energy(model, &state.springs[index]);

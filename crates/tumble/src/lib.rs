@@ -43,6 +43,8 @@ mod lanes;
 mod material;
 mod model;
 mod motion;
+mod pair_law;
+mod parallel;
 mod restore;
 mod scratch;
 mod shape;
@@ -62,6 +64,7 @@ pub use glam::{DMat3, DQuat, DVec3};
 pub use material::{ContactLaw, Damping, Material, MaterialOverride, damping_ratio, restitution};
 pub use model::{BodyModel, Integrator, Model};
 pub use motion::{Motion, Oscillation, Prescribed};
+pub use pair_law::{PairDamping, PairMaterial};
 pub use restore::StateError;
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{

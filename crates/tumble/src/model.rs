@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use crate::flight::DragModes;
 use crate::shape::Shape;
 use crate::wall::WallPlane;
-use crate::{BodyState, ContactLaw, Motion, Surface};
+use crate::{BodyState, ContactLaw, Motion, PairMaterial, Surface};
 
 /// How a step advances time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,6 +48,8 @@ pub struct Model {
     pub walls: Vec<WallPlane>,
     /// The smallest distance between two walls that face each other (m).
     pub gap: Option<f64>,
+    /// Whether there is a body that others can meet.
+    pub meets: bool,
     /// One entry a body.
     pub bodies: Vec<BodyModel>,
 }
@@ -75,6 +77,10 @@ pub struct BodyModel {
     pub has_friction: bool,
     /// Whether the force of any of these contacts depends on velocity.
     pub is_damped: bool,
+    /// What it brings into contacts with other bodies.
+    pub pair_material: PairMaterial,
+    /// Particles, spheres and mesh are within this distance of the centre of mass (m).
+    pub extent: f64,
     /// What other bodies meet of it.
     pub surface: Surface,
     /// What moves it.
@@ -96,6 +102,16 @@ impl BodyModel {
         let arm = rotation * self.shape.particles().get(index);
         let omega = self.angular_velocity(rotation, state.angular_momentum);
         (state.position + arm, state.velocity + omega.cross(arm))
+    }
+
+    /// Whether forces move it.
+    pub fn is_free(&self) -> bool {
+        self.motion == Motion::Free
+    }
+
+    /// Whether walls meet spheres about its particles instead of the particles themselves.
+    pub fn has_spheres(&self) -> bool {
+        matches!(self.surface, Surface::Spheres { .. })
     }
 
     /// No particle is farther from the centre of mass than this (m), whatever rounding does.

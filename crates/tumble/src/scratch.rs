@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::FrictionSpring;
-use crate::stage::Touching;
+use crate::stage::{Meeting, Touching};
 
 /// Room for what is derived within a step. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -16,6 +16,8 @@ pub struct Scratch {
     pub springs: Vec<Vec<FrictionSpring>>,
     /// Particles of one body in contact, while they are looked at.
     pub(crate) touching: Touching,
+    /// Contacts between bodies.
+    pub(crate) meeting: Meeting,
     /// Friction springs of one body to go back to.
     pub(crate) backup: Vec<FrictionSpring>,
 }
@@ -68,7 +70,7 @@ pub struct BodyForces {
     pub gravity: Wrench,
     /// Drag of the medium.
     pub drag: Wrench,
-    /// The normal springs of contacts; after refined steps, all that contacts did, averaged over the step.
+    /// The normal springs of contacts, and the tangential ones of those with other bodies; after refined steps, all that contacts did, averaged over the step.
     pub spring: Wrench,
     /// The dashpots of contacts, normal and tangential.
     pub dashpot: Wrench,
@@ -76,6 +78,10 @@ pub struct BodyForces {
     pub friction: Wrench,
     /// Energy that slipping and released friction springs lose in this evaluation (J).
     pub slip: f64,
+    /// What surfaces that move along themselves put in through the contacts of this body (W).
+    pub belt_power: f64,
+    /// What dashpots take of that (W).
+    pub belt_loss: f64,
     /// Depth of the deepest particle in contact (m), 0 in flight.
     pub max_depth: f64,
 }
@@ -96,5 +102,6 @@ impl BodyForces {
         let none = Wrench::default();
         (self.spring, self.dashpot, self.friction) = (none, none, none);
         (self.slip, self.max_depth) = (0.0, 0.0);
+        (self.belt_power, self.belt_loss) = (0.0, 0.0);
     }
 }

@@ -17,9 +17,12 @@ pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(
             stage::reach(model, state, scratch, h);
             stage::cruise(model, state, scratch, h);
             stage::fly(model, state, scratch, 0.5 * h);
+            stage::carry(model, state, 0.0, 0.5 * h);
             stage::contact(model, state, scratch, h);
+            stage::meet(model, state, scratch, h);
             stage::kick(model, state, scratch, h);
             stage::fly(model, state, scratch, 0.5 * h);
+            stage::carry(model, state, 0.5 * h, h);
         }
         (Integrator::Splitting, Some(tolerance)) => {
             stage::reach(model, state, scratch, h);
@@ -31,7 +34,9 @@ pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(
             stage::drag(model, state, scratch); // 8
             stage::reach(model, state, scratch, 0.0);
             stage::contact(model, state, scratch, 0.0); // 9, with 3 and 4
+            stage::meet(model, state, scratch, h);
             stage::euler(model, state, scratch); // 5 to 7
+            stage::carry(model, state, 0.0, h);
         }
     }
     state.step += 1;

@@ -71,6 +71,27 @@ impl Particles {
             + size_of::<Node>() * self.nodes.capacity()
     }
 
+    /// Appends the slots of all particles within `distance` (m) of a place, in their order.
+    pub(crate) fn list_within(&self, place: DVec3, distance: f64, slots: &mut Vec<u32>) {
+        if self.is_empty() {
+            return;
+        }
+        let near = |at: DVec3| at.distance_squared(place) <= distance * distance;
+        let mut branches = vec![Branch::root(&self.nodes)];
+        while let Some(branch) = branches.pop() {
+            if self.nodes[branch.node as usize].distance(place) > distance {
+                continue;
+            }
+            if let Some([left, right]) = branch.children() {
+                branches.extend([right, left]);
+                continue;
+            }
+            let start = branch.first * tree::LEAF as u32;
+            let end = (start + tree::LEAF as u32).min(self.len() as u32);
+            slots.extend((start..end).filter(|&slot| near(self.at(slot))));
+        }
+    }
+
     /// The place in a slot (m).
     pub(crate) fn at(&self, slot: u32) -> DVec3 {
         let slot = slot as usize;

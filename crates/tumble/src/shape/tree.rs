@@ -14,7 +14,7 @@ use crate::lanes::LANES;
 /// Groups of [`LANES`] slots in a leaf.
 pub(super) const GROUPS: usize = 4;
 /// Particles in a leaf; the last may have fewer.
-const LEAF: usize = GROUPS * LANES;
+pub(super) const LEAF: usize = GROUPS * LANES;
 
 /// f(r) = `offset` − `slope`·r: zero on a plane, and growing evenly behind it.
 #[derive(Clone, Copy, Debug)]
@@ -101,6 +101,11 @@ impl Node {
         let centre = 0.5 * (low + high);
         let half = (high - centre).max(centre - low);
         Self { centre, half, count: 0.0, mean: centre, spread: [0.0; 6] }
+    }
+
+    /// How far a place is from the box (m).
+    pub fn distance(&self, place: DVec3) -> f64 {
+        ((place - self.centre).abs() - self.half).max(DVec3::ZERO).length()
     }
 
     /// The spread times a vector.

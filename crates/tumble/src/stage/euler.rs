@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::kick::resist;
 use crate::state::NO_REST;
 use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally, Wrench};
 
@@ -9,9 +10,14 @@ use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally, Wren
 pub fn euler(model: &Model, state: &mut State, scratch: &mut Scratch) {
     for (index, body) in model.bodies.iter().enumerate() {
         let forces = &scratch.forces[index];
+        if !body.is_free() {
+            state.tally += resist(body, &state.bodies[index], forces, model.dt);
+            continue;
+        }
         advance(body, &mut state.bodies[index], forces, model.dt, &mut state.tally);
         std::mem::swap(&mut state.springs[index], &mut scratch.springs[index]);
     }
+    scratch.meeting.keep(model, &mut state.pair_springs);
 }
 
 /// Advances one body.
@@ -39,6 +45,8 @@ fn advance(
     state.angular_momentum += total.torque * h;
     *tally += Tally {
         slip: forces.slip,
+        work: h * forces.belt_power,
+        dashpot: h * forces.belt_loss,
         max_depth: forces.max_depth,
         evaluations: u64::from(forces.max_depth > 0.0),
         ..Tally::default()

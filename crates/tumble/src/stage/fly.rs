@@ -17,7 +17,7 @@ pub fn fly(model: &Model, state: &mut State, scratch: &Scratch, h: f64) {
 
 fn fly_those(model: &Model, state: &mut State, scratch: &Scratch, h: f64, near: bool) {
     for (index, body) in model.bodies.iter().enumerate() {
-        if scratch.near[index] == near {
+        if scratch.near[index] == near && body.is_free() {
             state.tally.drag += fly_body(model, body, &mut state.bodies[index], h);
         }
     }

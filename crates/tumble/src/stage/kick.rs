@@ -3,16 +3,22 @@
 use super::contact::Placed;
 use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally};
 
-/// v ← v + F h/M, L ← L + τ h, with the contact forces of [`contact`](super::contact) over the time `h` (s).
+/// v ← v + F h/M, L ← L + τ h, with the contact forces of [`contact`](super::contact()) and [`meet`](super::meet()) over the time
+/// `h` (s).
 pub fn kick(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     for (index, body) in model.bodies.iter().enumerate() {
+        let forces = &scratch.forces[index];
+        if !body.is_free() {
+            state.tally += resist(body, &state.bodies[index], forces, h);
+            continue;
+        }
         if !scratch.near[index] {
             continue;
         }
-        let forces = &scratch.forces[index];
         state.tally += kick_body(body, &mut state.bodies[index], forces, h);
         std::mem::swap(&mut state.springs[index], &mut scratch.springs[index]);
     }
+    scratch.meeting.keep(model, &mut state.pair_springs);
 }
 
 /// Kicks one body; returns what its contacts lost.
@@ -33,10 +39,24 @@ pub(crate) fn kick_body(
     state.velocity += total.force * (h / body.mass);
     state.angular_momentum += total.torque * h;
     Tally {
-        dashpot: h * mean.power_lost(&forces.dashpot),
+        dashpot: h * (mean.power_lost(&forces.dashpot) + forces.belt_loss),
         slip: forces.slip,
+        work: h * forces.belt_power,
         max_depth: forces.max_depth,
         evaluations: 1,
+        ..Tally::default()
+    }
+}
+
+/// What a body that nothing moves does on those that push it: work against their forces, and the part of
+/// the loss in dashpots that its own velocity makes.
+pub(crate) fn resist(body: &BodyModel, state: &BodyState, forces: &BodyForces, h: f64) -> Tally {
+    let place = Placed::new(body, state);
+    Tally {
+        work: h * (place.power_lost(&forces.contact()) + forces.belt_power),
+        dashpot: h * (place.power_lost(&forces.dashpot) + forces.belt_loss),
+        slip: forces.slip,
+        max_depth: forces.max_depth,
         ..Tally::default()
     }
 }

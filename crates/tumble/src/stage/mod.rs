@@ -1,5 +1,6 @@
 //! The stages of a step, one file each. [`step`](crate::step) calls them in order.
 
+mod carry;
 mod check;
 mod contact;
 mod drag;
@@ -7,10 +8,12 @@ mod euler;
 mod fly;
 mod gravity;
 mod kick;
+mod meet;
 mod pull;
 mod reach;
 mod refine;
 
+pub use carry::carry;
 pub use check::check;
 pub use contact::contact;
 pub(crate) use contact::{Placed, Touching};
@@ -19,6 +22,8 @@ pub use euler::euler;
 pub use fly::{cruise, fly};
 pub use gravity::gravity;
 pub use kick::kick;
+pub(crate) use meet::Meeting;
+pub use meet::meet;
 pub use pull::{Pull, pull};
 pub use reach::reach;
 pub use refine::refine;

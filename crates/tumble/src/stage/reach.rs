@@ -8,6 +8,11 @@ use crate::{Model, Scratch, State};
 /// with v = √(2 E/M) where drag may turn spin into speed (mass that is not carried by equal particles).
 pub fn reach(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     for (index, body) in model.bodies.iter().enumerate() {
+        if model.meets {
+            // where others are is not asked here
+            scratch.near[index] = body.is_free();
+            continue;
+        }
         let body_state = &state.bodies[index];
         let speed = if body.drag_modes.is_some() {
             let place = super::Placed::new(body, body_state);

@@ -23,7 +23,9 @@ use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, Scratch, St
 /// velocities before and after. With h = 0 they feel the velocities as they are.
 pub fn contact(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     for (index, body) in model.bodies.iter().enumerate() {
-        if !scratch.near[index] {
+        if !scratch.near[index] || body.has_spheres() {
+            scratch.forces[index].clear_contact();
+            scratch.springs[index].clear();
             continue;
         }
         let room = Room {

@@ -1,0 +1,152 @@
+//! One contact: its geometry, its springs and its forces.
+
+use glam::DVec3;
+
+use super::pose::Pose;
+use crate::{ContactLaw, Wrench};
+
+/// Where two bodies touch, or a sphere and a wall.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact {
+    /// Unit normal n, from the second body to the first.
+    pub normal: DVec3,
+    /// Depth δ (m), above 0.
+    pub depth: f64,
+    /// From the centre of mass of the first body to the point of contact (m).
+    pub arm: DVec3,
+    /// From the centre of mass of the second body to the same point (m).
+    pub other_arm: DVec3,
+    /// Stretch of the tangential spring at the latest kick, turned with the contact (m).
+    pub before: DVec3,
+    /// Its stretch now, before the limit (m).
+    pub stretch: DVec3,
+    /// Its stretch after the latest push (m).
+    pub held: DVec3,
+    /// Which particle touches, and which it touches, by slot.
+    pub particle: u32,
+    pub other: u32,
+}
+
+/// What the contacts of two bodies do together: to the first body as they are, to the second the other way round.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PairForces {
+    /// Springs and dashpots, normal and tangential.
+    pub all: Couple,
+    /// The dashpots alone.
+    pub dashpot: Couple,
+    /// Energy lost to slip (J).
+    pub slip: f64,
+    /// The deepest contact (m).
+    pub max_depth: f64,
+    /// What the moving surface of a held body puts in (W).
+    pub belt_power: f64,
+    /// What dashpots take of that (W).
+    pub belt_loss: f64,
+}
+
+/// A force at a point, and its torques about two centres of mass.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Couple {
+    pub force: DVec3,
+    pub torque: DVec3,
+    pub other_torque: DVec3,
+}
+
+impl Couple {
+    #[inline(always)]
+    fn add(&mut self, contact: &Contact, force: DVec3) {
+        self.force += force;
+        self.torque += contact.arm.cross(force);
+        self.other_torque += contact.other_arm.cross(force);
+    }
+
+    /// On the first body.
+    pub fn on_first(&self) -> Wrench {
+        Wrench { force: self.force, torque: self.torque }
+    }
+
+    /// On the second body: the opposite force at the same point.
+    pub fn on_second(&self) -> Wrench {
+        Wrench { force: -self.force, torque: -self.other_torque }
+    }
+}
+
+impl Contact {
+    /// Velocity of the first body against the second at the point of contact (m/s).
+    #[inline(always)]
+    pub fn relative_velocity(&self, first: &Pose, second: &Pose) -> DVec3 {
+        let belt = first.belt - second.belt;
+        let belt = belt - self.normal * belt.dot(self.normal);
+        first.velocity_at(self.arm) - second.velocity_at(self.other_arm) + belt
+    }
+
+    /// Carries the tangential spring on over the time `h` (s) since the latest kick: it turns with the normal and with the
+    /// spin that both bodies share about it, keeps its length, and stretches by the way of the one against the other.
+    pub fn carry(&mut self, first: &Pose, second: &Pose, h: f64) {
+        let n = self.normal;
+        if self.before != DVec3::ZERO {
+            let spin = 0.5 * (first.angular_velocity + second.angular_velocity).dot(n) * h;
+            let turned = self.before + n.cross(self.before) * spin;
+            let along = turned - n * turned.dot(n);
+            let length = along.length();
+            // a normal that turned by a right angle leaves nothing to keep
+            let scale = if length > 0.0 { self.before.length() / length } else { 0.0 };
+            self.before = along * scale;
+        }
+        let u = self.relative_velocity(first, second);
+        self.stretch = self.before + (u - n * u.dot(n)) * h;
+    }
+
+    /// Adds the forces of this contact with the velocities of the bodies; see [`crate::stage::contact`] for
+    /// the law.
+    #[inline(always)]
+    pub fn push(&mut self, law: &ContactLaw, first: &Pose, second: &Pose, sum: &mut PairForces) {
+        let n = self.normal;
+        let u = self.relative_velocity(first, second);
+        let u_n = u.dot(n);
+        let spring = law.stiffness * self.depth;
+        let push = (spring - law.damping * u_n).max(0.0);
+        let mut force = n * push;
+        let mut brake = n * (push - spring);
+        if law.friction > 0.0 {
+            let limit = law.friction * push;
+            let trial = law.friction_spring * self.stretch.length();
+            let mut hold = self.stretch * -law.friction_spring;
+            if trial > limit {
+                let part = limit / trial;
+                self.held = self.stretch * part;
+                hold *= part;
+                // the work of friction on the way from stretch to stretch, less what the spring takes up
+                sum.slip += 0.5
+                    * law.friction_spring
+                    * (self.before + self.held).dot(self.stretch - self.held);
+            } else {
+                self.held = self.stretch;
+            }
+            let tangential = within(hold, (n * u_n - u) * law.friction_damping, limit);
+            force += hold + tangential;
+            brake += tangential;
+            let belt = second.belt - first.belt;
+            sum.belt_power += (hold + tangential).dot(belt);
+            sum.belt_loss += tangential.dot(belt);
+        }
+        sum.all.add(self, force);
+        sum.dashpot.add(self, brake);
+        sum.max_depth = sum.max_depth.max(self.depth);
+    }
+}
+
+/// The largest part, up to all, of `brake` that can be added to `hold` without the sum being longer than `limit`.
+#[inline(always)]
+fn within(hold: DVec3, brake: DVec3, limit: f64) -> DVec3 {
+    let all = hold + brake;
+    if all.length_squared() <= limit * limit {
+        return brake;
+    }
+    // the larger root of |hold + β brake|² = limit²
+    let a = brake.length_squared();
+    let b = hold.dot(brake);
+    let room = (limit * limit - hold.length_squared()).max(0.0);
+    let beta = ((b * b + a * room).sqrt() - b) / a;
+    if beta > 0.0 { brake * beta.min(1.0) } else { DVec3::ZERO }
+}

@@ -1,0 +1,287 @@
+//! Which of the listed points touch, and the springs they had.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::contact::{Contact, PairForces};
+use super::list::{self, Near, Pair, Point};
+use super::pose::Pose;
+use crate::parallel::CHUNK;
+use crate::{ContactKind, Model, PairSpring};
+
+/// The contacts of the bodies of one chunk, as first bodies.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Found {
+    /// The contacts, pair by pair.
+    pub contacts: Vec<Contact>,
+    /// The pairs that have contacts.
+    pub touching: Vec<Touching>,
+    /// For each pair of the list, which of `touching` it is, or `NONE`.
+    pub number: Vec<u32>,
+    /// Energy (J) of springs that have come loose, by first body.
+    pub released: Vec<f64>,
+    /// The springs that go on.
+    pub springs: Vec<PairSpring>,
+}
+
+/// A pair that has no contact.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// A pair of bodies in contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touching {
+    /// Which pair of the list.
+    pub pair: u32,
+    pub first: u32,
+    /// Its contacts, as a range of those of the chunk.
+    pub start: u32,
+    pub end: u32,
+    /// What they do.
+    pub forces: PairForces,
+}
+
+impl Found {
+    /// Finds the contacts among the listed points of a chunk whose first body is number `body`. `old` are all springs
+    /// so far, `h` (s) is the time since the latest kick.
+    pub fn find(
+        &mut self,
+        near: &mut Near,
+        model: &Model,
+        poses: &[Pose],
+        old: &[PairSpring],
+        h: f64,
+        body: usize,
+    ) {
+        self.contacts.clear();
+        self.touching.clear();
+        self.number.clear();
+        self.number.resize(near.pairs.len(), NONE);
+        self.released.clear();
+        self.released.resize(CHUNK, 0.0);
+        let since = old.partition_point(|spring| (spring.first as usize) < body);
+        let until = old.partition_point(|spring| (spring.first as usize) < body + CHUNK);
+        let mut springs =
+            OldSprings { model, old: &old[since..until], released: &mut self.released, body };
+        for (number, pair) in near.pairs.iter_mut().enumerate() {
+            let sides = Sides::of(model, poses, pair);
+            let travel = sides.travel();
+            if travel < pair.quiet {
+                continue;
+            }
+            let start = self.contacts.len();
+            let mut quiet = f64::INFINITY;
+            for point in &mut near.points[pair.start as usize..pair.end as usize] {
+                if travel >= point.quiet {
+                    match sides.touch(pair, point) {
+                        Ok(mut contact) => {
+                            point.quiet = 0.0;
+                            if pair.law.friction > 0.0 {
+                                contact.before = springs.take(pair, &contact);
+                                contact.carry(sides.first, sides.second, h);
+                            }
+                            self.contacts.push(contact);
+                        }
+                        Err(gap) => point.quiet = travel + gap,
+                    }
+                }
+                quiet = quiet.min(point.quiet);
+            }
+            pair.quiet = quiet;
+            if self.contacts.len() > start {
+                self.number[number] = self.touching.len() as u32;
+                self.touching.push(Touching {
+                    pair: number as u32,
+                    first: pair.first,
+                    start: start as u32,
+                    end: self.contacts.len() as u32,
+                    forces: PairForces::default(),
+                });
+            }
+        }
+        springs.release_all();
+    }
+
+    /// The forces of all contacts with the velocities of `poses`.
+    pub fn push(&mut self, near: &Near, poses: &[Pose]) {
+        for touching in &mut self.touching {
+            let pair = &near.pairs[touching.pair as usize];
+            let (first, second) = ends(poses, pair);
+            touching.forces = PairForces::default();
+            for contact in &mut self.contacts[touching.start as usize..touching.end as usize] {
+                contact.push(&pair.law, first, second, &mut touching.forces);
+            }
+        }
+    }
+
+    /// The springs that go on after the latest push.
+    pub fn keep(&mut self, near: &Near, model: &Model) {
+        self.springs.clear();
+        for touching in &self.touching {
+            let pair = &near.pairs[touching.pair as usize];
+            if pair.law.friction == 0.0 {
+                continue;
+            }
+            for contact in &self.contacts[touching.start as usize..touching.end as usize] {
+                self.springs.push(spring(model, pair, contact));
+            }
+        }
+    }
+}
+
+/// The spring of a contact.
+fn spring(model: &Model, pair: &Pair, contact: &Contact) -> PairSpring {
+    let index = |body: u32, slot| model.bodies[body as usize].shape.particles().index_in(slot);
+    let Pair { first, second, kind, .. } = *pair;
+    let (particle, other) = match kind {
+        ContactKind::Spheres => (index(first, contact.particle), index(second, contact.other)),
+        ContactKind::SecondInFirst => (index(second, contact.particle), 0),
+        ContactKind::Wall | ContactKind::FirstInSecond => (index(first, contact.particle), 0),
+    };
+    PairSpring { first, second, kind, particle, other, stretch: contact.held }
+}
+
+/// What stands for a wall as second body.
+static STILL: std::sync::LazyLock<Pose> = std::sync::LazyLock::new(Pose::default);
+
+/// The bodies of a pair.
+fn ends<'a>(poses: &'a [Pose], pair: &Pair) -> (&'a Pose, &'a Pose) {
+    let second = if pair.kind == ContactKind::Wall { &STILL } else { &poses[pair.second as usize] };
+    (&poses[pair.first as usize], second)
+}
+
+/// Two bodies where they are.
+struct Sides<'a> {
+    model: &'a Model,
+    first: &'a Pose,
+    second: &'a Pose,
+}
+
+impl<'a> Sides<'a> {
+    fn of(model: &'a Model, poses: &'a [Pose], pair: &Pair) -> Self {
+        let (first, second) = ends(poses, pair);
+        Self { model, first, second }
+    }
+
+    fn travel(&self) -> f64 {
+        self.first.travel + self.second.travel
+    }
+
+    /// The contact of a listed point, or how far it is from one (m).
+    #[inline(always)]
+    fn touch(&self, pair: &Pair, point: &mut Point) -> Result<Contact, f64> {
+        let (model, p, q) = (self.model, self.first, self.second);
+        let a = &model.bodies[pair.first as usize];
+        let (at, normal, depth) = match pair.kind {
+            ContactKind::Wall => {
+                let wall = &model.walls[pair.second as usize];
+                let place = p.place(a, point.particle);
+                let depth = pair.reach + wall.depth(place);
+                (place - wall.normal * pair.reach, wall.normal, depth)
+            }
+            ContactKind::Spheres => {
+                let b = &model.bodies[pair.second as usize];
+                let place = p.place(a, point.particle);
+                let apart = place - q.place(b, point.other);
+                let distance = apart.length();
+                let depth = pair.reach - distance;
+                if depth <= 0.0 {
+                    return Err(-depth);
+                }
+                // centres at one place are pushed apart as their bodies are, or upwards
+                let normal = if distance > 0.0 {
+                    apart / distance
+                } else {
+                    (p.position - q.position).try_normalize().unwrap_or(DVec3::Y)
+                };
+                (place - normal * (list::radius(a) - 0.5 * depth), normal, depth)
+            }
+            ContactKind::FirstInSecond | ContactKind::SecondInFirst => return Err(f64::INFINITY),
+        };
+        if depth <= 0.0 {
+            return Err(-depth);
+        }
+        let zero = DVec3::ZERO;
+        Ok(Contact {
+            normal,
+            depth,
+            arm: at - p.position,
+            other_arm: at - q.position,
+            before: zero,
+            stretch: zero,
+            held: zero,
+            particle: point.particle,
+            other: if pair.kind == ContactKind::Spheres { point.other } else { 0 },
+        })
+    }
+}
+
+/// The springs of the latest kick, taken in their order.
+struct OldSprings<'a> {
+    model: &'a Model,
+    old: &'a [PairSpring],
+    released: &'a mut [f64],
+    body: usize,
+}
+
+impl OldSprings<'_> {
+    /// The stretch that a contact had at the latest kick; springs that come before it are released.
+    fn take(&mut self, pair: &Pair, contact: &Contact) -> DVec3 {
+        while let Some((spring, rest)) = self.old.split_first() {
+            match self.compare(spring, pair, contact) {
+                Ordering::Less => self.release(spring),
+                Ordering::Equal => {
+                    self.old = rest;
+                    return spring.stretch;
+                }
+                Ordering::Greater => break,
+            }
+            self.old = rest;
+        }
+        DVec3::ZERO
+    }
+
+    fn release_all(&mut self) {
+        for spring in self.old {
+            self.release(spring);
+        }
+    }
+
+    fn compare(&self, spring: &PairSpring, pair: &Pair, contact: &Contact) -> Ordering {
+        let order = (pair.kind != ContactKind::Wall, pair.second, pair.kind);
+        let of_pair =
+            (spring.first, (spring.kind != ContactKind::Wall, spring.second, spring.kind));
+        of_pair.cmp(&(pair.first, order)).then_with(|| {
+            let (particle, other) = slots(self.model, spring);
+            (particle, other).cmp(&(contact.particle, contact.other))
+        })
+    }
+
+    /// What is left in a spring is lost.
+    fn release(&mut self, spring: &PairSpring) {
+        let stiffness = friction_spring(self.model, spring);
+        let lost = 0.5 * stiffness * spring.stretch.length_squared();
+        self.released[spring.first as usize - self.body] += lost;
+    }
+}
+
+/// Where the shapes keep the particles of a spring.
+pub(super) fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
+    let slot = |body: u32, index| model.bodies[body as usize].shape.particles().slot_of(index);
+    match spring.kind {
+        ContactKind::Spheres => {
+            (slot(spring.first, spring.particle), slot(spring.second, spring.other))
+        }
+        ContactKind::SecondInFirst => (slot(spring.second, spring.particle), 0),
+        ContactKind::Wall | ContactKind::FirstInSecond => (slot(spring.first, spring.particle), 0),
+    }
+}
+
+/// k_t of a spring (N/m).
+pub(super) fn friction_spring(model: &Model, spring: &PairSpring) -> f64 {
+    let first = &model.bodies[spring.first as usize];
+    if spring.kind == ContactKind::Wall {
+        return first.contacts[spring.second as usize].friction_spring;
+    }
+    list::law(first, &model.bodies[spring.second as usize], spring.kind).friction_spring
+}

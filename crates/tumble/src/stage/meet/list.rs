@@ -1,0 +1,265 @@
+//! The lists of what may touch soon, made anew when a body has come too far.
+//!
+//! Every body has a skin. Pairs of bodies, and particles of theirs, are listed when they are nearer to each other than their
+//! skins together, and the lists hold until a body has travelled its skin: nothing that touches can be missing. Within that time,
+//! a pair or particle that was found to be a distance away is quiet until both bodies have travelled that far together.
+
+use glam::DVec3;
+
+use super::grid::Grid;
+use super::pose::Pose;
+use crate::parallel::{self, CHUNK};
+use crate::{BodyModel, ContactKind, ContactLaw, Model, Surface};
+
+/// The skin of a body as a part of the radius of its spheres, or of what stands for it.
+const SKIN: f64 = 0.2;
+/// The radius that stands for that of spheres, as a part of the extent of a body without.
+const GRAIN: f64 = 0.1;
+
+/// Two bodies, or a body and a wall, that may touch soon.
+#[derive(Clone, Debug)]
+pub(super) struct Pair {
+    pub first: u32,
+    pub second: u32,
+    pub kind: ContactKind,
+    /// Its points, as a range of those of the chunk.
+    pub start: u32,
+    pub end: u32,
+    /// No contact until both bodies have travelled so far together (m).
+    pub quiet: f64,
+    /// How far apart two particles touch, or a particle and a mesh or wall (m).
+    pub reach: f64,
+    pub law: ContactLaw,
+}
+
+/// Two particles, or a particle and a mesh or wall, that may touch soon.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    /// Which particle, by slot.
+    pub particle: u32,
+    /// Which particle of the other body, by slot; of a mesh, the triangle that was nearest last.
+    pub other: u32,
+    /// No contact until both bodies have travelled so far together (m).
+    pub quiet: f64,
+}
+
+/// What the bodies of one chunk, as first bodies, may touch.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Near {
+    pub pairs: Vec<Pair>,
+    pub points: Vec<Point>,
+    /// Room for slots of particles.
+    slots: [Vec<u32>; 2],
+}
+
+/// All lists.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lists {
+    /// One entry a chunk of bodies.
+    pub chunks: Vec<Near>,
+    /// Where each body is the second of a pair: chunk and number of the pair, in the order of first bodies.
+    pub seconds: Vec<(u32, u32)>,
+    /// Where the entries of each body begin in `seconds`, and an end.
+    pub starts: Vec<u32>,
+    grid: Grid,
+    pairs: Vec<(u32, u32)>,
+}
+
+/// How far a body may travel before the lists are made anew (m).
+pub(super) fn skin(body: &BodyModel) -> f64 {
+    let grain = match body.surface {
+        Surface::Spheres { radius } => radius,
+        _ => GRAIN * body.extent,
+    };
+    SKIN * grain
+}
+
+/// The radius of the spheres of a body; 0 where it has none (m).
+pub(super) fn radius(body: &BodyModel) -> f64 {
+    if let Surface::Spheres { radius } = body.surface { radius } else { 0.0 }
+}
+
+impl Lists {
+    /// Makes all lists for bodies at `poses`, which have travelled nowhere yet.
+    pub fn make(&mut self, model: &Model, poses: &[Pose]) {
+        let bodies = &model.bodies;
+        let ball =
+            |index: usize| (poses[index].position, bodies[index].extent + skin(&bodies[index]));
+        let free = |index: usize| bodies[index].is_free();
+        self.grid.find(bodies.len(), &ball, &free, &mut self.pairs);
+        self.chunks.resize_with(bodies.len().div_ceil(CHUNK), Near::default);
+        let pairs = &self.pairs;
+        parallel::each(&mut self.chunks, |index, near| {
+            near.pairs.clear();
+            near.points.clear();
+            let first = (index * CHUNK) as u32;
+            let until = (first + CHUNK as u32).min(bodies.len() as u32);
+            let mut pairs = &pairs[pairs.partition_point(|pair| pair.0 < first)..];
+            for first in first..until {
+                near.list_walls(model, poses, first);
+                let count = pairs.iter().take_while(|pair| pair.0 == first).count();
+                for &(_, second) in &pairs[..count] {
+                    near.list_bodies(model, poses, first, second);
+                }
+                pairs = &pairs[count..];
+            }
+        });
+        self.turn_round(bodies.len());
+    }
+
+    /// Fills `seconds` and `starts`.
+    fn turn_round(&mut self, body_count: usize) {
+        self.starts.clear();
+        self.starts.resize(body_count + 1, 0);
+        let pairs = || {
+            self.chunks.iter().enumerate().flat_map(|(chunk, near)| {
+                let bodies = |pair: &&Pair| pair.kind != ContactKind::Wall;
+                let pairs = near.pairs.iter().enumerate();
+                pairs
+                    .filter(move |(_, pair)| bodies(pair))
+                    .map(move |(number, pair)| (chunk, number, pair.second))
+            })
+        };
+        for (_, _, second) in pairs() {
+            self.starts[second as usize + 1] += 1;
+        }
+        for body in 0..body_count {
+            self.starts[body + 1] += self.starts[body];
+        }
+        let mut next = self.starts.clone();
+        let mut seconds = std::mem::take(&mut self.seconds);
+        seconds.resize(self.starts[body_count] as usize, (0, 0));
+        for (chunk, number, second) in pairs() {
+            let at = &mut next[second as usize];
+            seconds[*at as usize] = (chunk as u32, number as u32);
+            *at += 1;
+        }
+        self.seconds = seconds;
+    }
+}
+
+impl Near {
+    /// Spheres of a body and the walls; particles without spheres meet walls in [`crate::stage::contact`].
+    fn list_walls(&mut self, model: &Model, poses: &[Pose], first: u32) {
+        let (body, pose) = (&model.bodies[first as usize], &poses[first as usize]);
+        let Surface::Spheres { radius } = body.surface else { return };
+        if !body.is_free() {
+            return;
+        }
+        for (number, (wall, law)) in model.walls.iter().zip(&body.contacts).enumerate() {
+            if wall.depth(pose.position) < -(body.extent + skin(body)) {
+                continue;
+            }
+            let start = self.points.len() as u32;
+            for slot in 0..body.shape.particles().len() as u32 {
+                if wall.depth(pose.place(body, slot)) > -(radius + skin(body)) {
+                    self.points.push(Point { particle: slot, other: 0, quiet: 0.0 });
+                }
+            }
+            let pair = Pair {
+                first,
+                second: number as u32,
+                kind: ContactKind::Wall,
+                start,
+                end: 0,
+                quiet: 0.0,
+                reach: radius,
+                law: *law,
+            };
+            self.add(pair);
+        }
+    }
+
+    /// Two bodies, in each way that they can touch.
+    fn list_bodies(&mut self, model: &Model, poses: &[Pose], first: u32, second: u32) {
+        let at =
+            |index: u32| Side { body: &model.bodies[index as usize], pose: &poses[index as usize] };
+        let (a, b) = (at(first), at(second));
+        for &kind in kinds(a.body, b.body) {
+            let start = self.points.len() as u32;
+            match kind {
+                ContactKind::Wall => {}
+                ContactKind::Spheres => self.list_spheres(a, b),
+                ContactKind::FirstInSecond => self.list_particles(a, b),
+                ContactKind::SecondInFirst => self.list_particles(b, a),
+            }
+            let (law, reach) = (law(a.body, b.body, kind), reach(a.body, b.body, kind));
+            self.add(Pair { first, second, kind, start, end: 0, quiet: 0.0, reach, law });
+        }
+    }
+
+    /// Keeps a pair if it has points.
+    fn add(&mut self, pair: Pair) {
+        let end = self.points.len() as u32;
+        if end > pair.start {
+            self.pairs.push(Pair { end, ..pair });
+        }
+    }
+
+    /// Spheres of two bodies that are near each other.
+    fn list_spheres(&mut self, a: Side, b: Side) {
+        let margin = skin(a.body) + skin(b.body);
+        let [mut ours, mut theirs] = std::mem::take(&mut self.slots);
+        a.list_near(b.pose.position, b.body.extent + radius(a.body) + margin, &mut ours);
+        b.list_near(a.pose.position, a.body.extent + radius(b.body) + margin, &mut theirs);
+        let reach = radius(a.body) + radius(b.body) + margin;
+        for &i in &ours {
+            let place = a.pose.place(a.body, i);
+            for &j in &theirs {
+                if place.distance_squared(b.pose.place(b.body, j)) < reach * reach {
+                    self.points.push(Point { particle: i, other: j, quiet: 0.0 });
+                }
+            }
+        }
+        self.slots = [ours, theirs];
+    }
+
+    /// Particles of `a` that are near the mesh of `b`.
+    fn list_particles(&mut self, _a: Side, _b: Side) {}
+}
+
+/// A body where it is.
+#[derive(Clone, Copy)]
+struct Side<'a> {
+    body: &'a BodyModel,
+    pose: &'a Pose,
+}
+
+impl Side<'_> {
+    /// The particles within `distance` (m) of a place, by slot in their order.
+    fn list_near(&self, place: DVec3, distance: f64, slots: &mut Vec<u32>) {
+        slots.clear();
+        let inward = self.pose.rotation.transpose() * (place - self.pose.position);
+        self.body.shape.particles().list_within(inward, distance, slots);
+    }
+}
+
+/// The ways in which two bodies can touch.
+fn kinds(first: &BodyModel, second: &BodyModel) -> &'static [ContactKind] {
+    use ContactKind::{FirstInSecond, SecondInFirst, Spheres};
+    match (first.surface, second.surface) {
+        (Surface::None, Surface::None) => &[],
+        (Surface::Mesh, Surface::Mesh) => &[FirstInSecond, SecondInFirst],
+        (Surface::Mesh, _) => &[SecondInFirst],
+        (_, Surface::Mesh) => &[FirstInSecond],
+        _ => &[Spheres],
+    }
+}
+
+/// The law of one kind of contact between two bodies.
+pub(super) fn law(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> ContactLaw {
+    if kind == ContactKind::SecondInFirst {
+        second.pair_material.law(&first.pair_material)
+    } else {
+        first.pair_material.law(&second.pair_material)
+    }
+}
+
+/// How far apart particles of these bodies touch, or particles and a mesh (m).
+fn reach(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> f64 {
+    match kind {
+        ContactKind::Wall | ContactKind::FirstInSecond => radius(first),
+        ContactKind::SecondInFirst => radius(second),
+        ContactKind::Spheres => radius(first) + radius(second),
+    }
+}

@@ -1,0 +1,99 @@
+//! Bodies in each other's way, and spheres at walls.
+//!
+//! *List* what may touch soon ([`list`]), *find* what touches ([`find`]), *push* with springs, dashpots and friction
+//! ([`contact`]), and *gather* what each body feels. All of it runs on chunks of bodies that do not depend on how many threads
+//! there are. What is summed is summed in the order of bodies and particles, whatever the lists hold besides: they may be made anew at
+//! any moment, and a run that goes on from a checkpoint comes to the same bits.
+
+mod contact;
+mod find;
+mod gather;
+mod grid;
+mod list;
+mod pose;
+
+use self::find::Found;
+use self::gather::BodySum;
+use self::list::Lists;
+use self::pose::Pose;
+use crate::parallel::{self, CHUNK};
+use crate::{BodyModel, Integrator, Model, PairSpring, Scratch, State};
+
+/// Room for contacts between bodies. Dropping it between steps changes no result.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Meeting {
+    poses: Vec<Pose>,
+    lists: Lists,
+    /// Contacts, one entry a chunk of bodies.
+    found: Vec<Found>,
+    /// What each body feels of it.
+    sums: Vec<BodySum>,
+}
+
+/// Contact forces between bodies, and between spheres and walls, added to those of [`contact`](super::contact()). `h` (s) is the
+/// time since the latest kick. Under `splitting` dashpots feel the mean of the velocities before and after the kick, under `euler`
+/// the velocities as they are.
+pub fn meet(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
+    if !model.meets {
+        return;
+    }
+    let meeting = &mut scratch.meeting;
+    meeting.place(model, state);
+    meeting.find(model, &state.pair_springs, h);
+    meeting.push();
+    meeting.gather();
+    let is_damped = |body: &BodyModel| body.pair_material.is_damped();
+    if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
+        meeting.half_kick(model, &scratch.forces, h);
+        meeting.push();
+        meeting.gather();
+    }
+    meeting.give(&mut scratch.forces);
+}
+
+impl Meeting {
+    /// Puts the bodies where they are, and makes the lists anew where they no longer hold.
+    fn place(&mut self, model: &Model, state: &State) {
+        let bodies = &model.bodies;
+        let known = self.poses.len() == bodies.len();
+        if known {
+            parallel::each_body(&mut self.poses, |first, poses| {
+                for (index, pose) in (first..).zip(poses) {
+                    *pose = pose.moved(&bodies[index], &state.bodies[index]);
+                }
+            });
+        }
+        let hold =
+            || self.poses.iter().zip(bodies).all(|(pose, body)| pose.travel <= list::skin(body));
+        if !known || !hold() {
+            self.poses.clear();
+            self.poses.extend(
+                bodies.iter().zip(&state.bodies).map(|(body, state)| Pose::new(body, state)),
+            );
+            self.lists.make(model, &self.poses);
+        }
+    }
+
+    fn find(&mut self, model: &Model, old: &[PairSpring], h: f64) {
+        let poses = &self.poses;
+        self.found.resize_with(self.lists.chunks.len(), Found::default);
+        parallel::each_of_two(&mut self.found, &mut self.lists.chunks, |index, found, near| {
+            found.find(near, model, poses, old, h, index * CHUNK);
+        });
+    }
+
+    fn push(&mut self) {
+        let (poses, chunks) = (&self.poses, &self.lists.chunks);
+        parallel::each(&mut self.found, |index, found| found.push(&chunks[index], poses));
+    }
+
+    /// The springs that go on after the latest push.
+    pub fn keep(&mut self, model: &Model, springs: &mut Vec<PairSpring>) {
+        let chunks = &self.lists.chunks;
+        parallel::each(&mut self.found, |index, found| found.keep(&chunks[index], model));
+        springs.clear();
+        for found in &self.found {
+            springs.extend_from_slice(&found.springs);
+        }
+    }
+}
