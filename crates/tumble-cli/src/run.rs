@@ -182,6 +182,7 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
         ("results", folder.path().display().to_string()),
         ("look at it", folder.path().join("motion.html").display().to_string()),
     ];
+    rows.extend(finished.notes.iter().map(|note| ("note", (*note).to_owned())));
     let advice = advice(s, relative);
     rows.extend(advice.into_iter().map(|advice| ("beware", advice)));
     table(&rows)

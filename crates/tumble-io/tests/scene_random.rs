@@ -7,6 +7,7 @@ use std::path::Path;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
+use tumble::{Motion, Oscillation, Prescribed, Surface};
 use tumble_io::scene::{BUILTIN, LoadOptions, Loaded, SceneError, Source, load_text};
 
 fn load(text: &str, sets: &[String]) -> Result<Loaded, SceneError> {
@@ -36,7 +37,7 @@ fn judge(loaded: Result<Loaded, SceneError>) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-const WORDS: [&str; 62] = [
+const WORDS: [&str; 70] = [
     "duration",
     "dt",
     "gravity",
@@ -73,12 +74,20 @@ const WORDS: [&str; 62] = [
     "interval",
     "radius",
     "subdivisions",
+    "surface",
+    "particle_radius",
+    "motion",
+    "surface_velocity",
+    "oscillation",
     "\"sphere\"",
     "\"box\"",
     "\"cat\"",
     "\"euler\"",
     "\"solid\"",
     "\"volume\"",
+    "\"spheres\"",
+    "\"prescribed\"",
+    "{ amplitude = [0, 1, 0], frequency = 2 }",
     "\"+y\"",
     "\"",
     "'''",
@@ -108,7 +117,7 @@ fn words() -> impl Strategy<Value = String> {
 
 /// Lines `key = value` that are TOML most of the time.
 fn lines() -> impl Strategy<Value = String> {
-    vec((select(&WORDS[..36]), select(&WORDS[36..])), 0..12).prop_map(|lines| {
+    vec((select(&WORDS[..41]), select(&WORDS[41..])), 0..12).prop_map(|lines| {
         let line = |(key, value): (&str, &str)| match key.starts_with('[') {
             true => format!("{key}\n"),
             false => format!("{key} = {value}\n"),
@@ -190,6 +199,43 @@ fn smudged() -> impl Strategy<Value = String> {
     })
 }
 
+/// A body with whatever keys of surface and motion, each as it may be or not at all.
+fn meetings() -> impl Strategy<Value = String> {
+    let number = || select(&["0", "-1", "1e-9", "0.5", "nan", "1e300"][..]);
+    let geometry = select(
+        &["shape = \"tetrahedron\"", "particles = [[0, 0, 0], [0, 1, 0], [0.3, 0, 0.2]]"][..],
+    );
+    let surface = select(&["", "none", "mesh", "spheres"][..]);
+    let motion = select(&["", "free", "fixed", "prescribed"][..]);
+    let mass_model = select(&["particles", "solid"][..]);
+    let maybe = || proptest::option::of(number());
+    (geometry, surface, motion, mass_model, [maybe(), maybe(), maybe()], (maybe(), maybe()))
+        .prop_map(
+            |(geometry, surface, motion, mass_model, [radius, belt, amplitude], (phase, speed))| {
+                let word = |key: &str, word: &str| match word {
+                    "" => String::new(),
+                    word => format!("{key} = \"{word}\"\n"),
+                };
+                let value = |value: Option<&str>, line: &dyn Fn(&str) -> String| {
+                    value.map_or(String::new(), |value| line(value) + "\n")
+                };
+                let phase = value(phase, &|x| format!(", phase = {x}")).replace('\n', "");
+                [
+                    format!("[[body]]\n{geometry}\nmass_model = \"{mass_model}\"\n"),
+                    word("surface", surface),
+                    word("motion", motion),
+                    value(radius, &|x| format!("particle_radius = {x}")),
+                    value(belt, &|x| format!("surface_velocity = [{x}, 0, 0]")),
+                    value(speed, &|x| format!("initial_velocity = [{x}, 0, 0]")),
+                    value(amplitude, &|x| {
+                        format!("oscillation = {{ amplitude = [0, {x}, 0], frequency = 2{phase} }}")
+                    }),
+                ]
+                .concat()
+            },
+        )
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -205,6 +251,11 @@ proptest! {
 
     #[test]
     fn keys_with_any_values(text in lines()) {
+        judge(load(&text, &[]))?;
+    }
+
+    #[test]
+    fn bodies_that_meet_and_move_by_themselves(text in meetings()) {
         judge(load(&text, &[]))?;
     }
 
@@ -253,4 +304,55 @@ proptest! {
         let first = (0..).map(|frame| scene.frame_step(frame)).find(|&at| at > step);
         prop_assert_eq!(Some(scene.next_frame(step)), first);
     }
+}
+
+#[test]
+fn what_bodies_meet_and_how_they_move_reaches_the_world() {
+    let text = "[[body]]\nshape = \"tetrahedron\"\nparticle_radius = 0.01\n\
+                [[body]]\nshape = \"tetrahedron\"\nposition = [3, 0, 0]\nsurface = \"mesh\"\n\
+                motion = \"prescribed\"\noscillation = { amplitude = [0, 0.1, 0], frequency = 5 }\n\
+                [[body]]\nshape = \"tetrahedron\"\nposition = [9, 0, 0]\nmotion = \"fixed\"\n\
+                surface_velocity = [2, 0, 0]\n";
+    let loaded = load(text, &[]).unwrap();
+    let again = load(&loaded.scene.to_toml(), &[]).unwrap();
+    for world in [loaded.world, again.world] {
+        let bodies = &world.model().bodies;
+        assert_eq!(bodies[0].surface, Surface::Spheres { radius: 0.01 });
+        assert_eq!(bodies[0].motion, Motion::Free);
+        assert_eq!(bodies[1].surface, Surface::Mesh);
+        let amplitude = tumble::DVec3::new(0.0, 0.1, 0.0);
+        let oscillation = Some(Oscillation { amplitude, frequency: 5.0, phase: 0.0 });
+        let swing = Prescribed { oscillation, ..Prescribed::default() };
+        assert_eq!(bodies[1].motion, Motion::Prescribed(swing));
+        assert_eq!(bodies[2].surface, Surface::None);
+        let surface_velocity = 2.0 * tumble::DVec3::X;
+        let belt = Prescribed { oscillation: None, surface_velocity };
+        assert_eq!(bodies[2].motion, Motion::Prescribed(belt));
+    }
+}
+
+#[test]
+fn a_clump_of_solid_balls_weighs_its_union_once() {
+    let clump = |keys: &str| {
+        let text = format!(
+            "[[body]]\nparticles = [[0, 0, 0], [0.1, 0, 0]]\nscale = 2\nparticle_radius = 0.2\n\
+             mass_model = \"solid\"\n{keys}"
+        );
+        load(&text, &[]).map(|loaded| loaded.world.model().bodies[0].clone())
+    };
+    // two balls whose centres are a radius apart: 27/16 of a ball
+    let body = clump("density = 1000\n").unwrap();
+    let ball = 4.0 / 3.0 * std::f64::consts::PI * 0.008;
+    assert!((body.mass / (1000.0 * ball * 27.0 / 16.0) - 1.0).abs() < 1e-4, "{}", body.mass);
+    assert!((body.shape.centre() - tumble::DVec3::X * 0.1).length() < 1e-12);
+    // a lone ball: 2/5 m r²
+    let text = "[[body]]\nparticles = [[3, 4, 5]]\nparticle_radius = 0.5\n\
+                mass_model = \"solid\"\nmass = 2\n";
+    let ball = load(text, &[]).unwrap().world.model().bodies[0].clone();
+    for moment in ball.inertia.to_cols_array_2d().iter().enumerate().map(|(i, column)| column[i]) {
+        assert!((moment - 0.2).abs() < 1e-14, "{moment}");
+    }
+    // without spheres there is nothing solid
+    let error = clump("surface = \"none\"\n").unwrap_err().to_string();
+    assert!(error.contains("only goes with surface = \"spheres\""), "{error}");
 }

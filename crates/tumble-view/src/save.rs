@@ -1,7 +1,7 @@
 //! The scene as it is now, to go on from.
 
-use tumble::World;
-use tumble_io::scene::{BodyScene, Scene};
+use tumble::{Prescribed, World};
+use tumble_io::scene::{BodyScene, MotionScene, Scene};
 
 use crate::setting::load;
 
@@ -19,12 +19,20 @@ pub fn to_toml(scene: &Scene, world: &World) -> Result<String, String> {
     for body in &scene.bodies {
         for name in body.names() {
             let Some(now) = bodies.next() else { break };
+            let motion = at_phase(body.motion, world.time());
+            let is_free = motion == MotionScene::Free;
             saved.bodies.push(BodyScene {
                 name,
+                motion,
                 position: Some(now.position()),
                 orientation: now.orientation(),
-                initial_velocity: now.velocity(),
-                initial_angular_velocity: now.angular_velocity(),
+                // a swing comes on top of what a prescribed body keeps
+                initial_velocity: if is_free { now.velocity() } else { body.initial_velocity },
+                initial_angular_velocity: if is_free {
+                    now.angular_velocity()
+                } else {
+                    body.initial_angular_velocity
+                },
                 copies: None,
                 ..body.clone()
             });
@@ -37,4 +45,13 @@ pub fn to_toml(scene: &Scene, world: &World) -> Result<String, String> {
     load(scene, text.clone(), Vec::new())
         .map_err(|why| format!("a run could not start from here: {why}"))?;
     Ok(text)
+}
+
+/// A motion that goes on from `time` (s) as one that starts there.
+fn at_phase(mut motion: MotionScene, time: f64) -> MotionScene {
+    if let MotionScene::Prescribed(Prescribed { oscillation: Some(swing), .. }) = &mut motion {
+        let turns = (swing.frequency * time).fract();
+        swing.phase = (swing.phase + std::f64::consts::TAU * turns) % std::f64::consts::TAU;
+    }
+    motion
 }

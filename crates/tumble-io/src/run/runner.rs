@@ -33,6 +33,8 @@ pub struct Finished {
     pub energy: EnergyRow,
     /// Steps taken since it was last resumed.
     pub steps_here: u64,
+    /// What may surprise who wrote the scene.
+    pub notes: Vec<&'static str>,
 }
 
 /// Runs a scene to its end and writes everything into `folder`.
@@ -94,7 +96,7 @@ impl<'a> Run<'a> {
         let mut json = serde_json::to_string_pretty(&summary).unwrap_or_default();
         json.push('\n');
         folder.write("summary.json", json.as_bytes())?;
-        Ok(Finished { summary, energy, steps_here })
+        Ok(Finished { summary, energy, steps_here, notes: notes(&self.scene) })
     }
 
     fn go(&mut self, watch: &mut dyn FnMut(Progress) -> bool) -> Result<(), RunError> {
@@ -157,6 +159,12 @@ impl<'a> Run<'a> {
         }
         let _ = self.recording.checkpoint(&self.scene, &good);
     }
+}
+
+/// What is no error, but may not be what was meant.
+fn notes(scene: &Scene) -> Vec<&'static str> {
+    let apart = "the bodies do not touch each other: none has a `surface`";
+    scene.bodies_pass_through().then_some(apart).into_iter().collect()
 }
 
 /// A copy, in the room of the one before.

@@ -6,8 +6,10 @@ use tumble::{DVec3, MassModel, Sampling};
 
 use super::description::{BodyScene, Copies, Geometry, MassScene};
 use super::geometry::{MASS_MODELS, SHAPE_KEYS, shape_scene};
+use super::motion::motion;
 use super::read::{material, orientation};
 use super::reader::{Range, Reader};
+use super::surface::surface;
 
 /// The keys that say how heavy a body is; only one may be given.
 pub const MASS_KEYS: [&str; 3] = ["particle_mass", "mass", "density"];
@@ -38,6 +40,9 @@ pub fn body(reader: Reader, index: usize) -> BodyScene {
         Some(name) => name.to_owned(),
         None => format!("body {index}"),
     };
+    let velocity = reader.vector("initial_velocity").unwrap_or(DVec3::ZERO);
+    let angular_velocity = reader.vector("initial_angular_velocity").unwrap_or(DVec3::ZERO);
+    let starts = [("initial_velocity", velocity), ("initial_angular_velocity", angular_velocity)];
     let body = BodyScene {
         name,
         scale: reader.number("scale", Range::Positive).unwrap_or(1.0),
@@ -46,9 +51,11 @@ pub fn body(reader: Reader, index: usize) -> BodyScene {
         mass: mass(&reader),
         position: reader.vector("position"),
         orientation: orientation(&reader),
-        initial_velocity: reader.vector("initial_velocity").unwrap_or(DVec3::ZERO),
-        initial_angular_velocity: reader.vector("initial_angular_velocity").unwrap_or(DVec3::ZERO),
+        initial_velocity: velocity,
+        initial_angular_velocity: angular_velocity,
         material: material(&reader),
+        surface: surface(&reader, geometry.as_ref()),
+        motion: motion(&reader, starts),
         copies: reader.table("copies").and_then(copies),
         geometry: geometry.unwrap_or(Geometry::Particles(vec![DVec3::ZERO])),
     };

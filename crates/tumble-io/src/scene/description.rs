@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use tumble::{
-    DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Sampling, WallBox, WallPlane,
+    DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Prescribed, Sampling,
+    Surface, WallBox, WallPlane,
 };
 
 use super::geometry::ShapeScene;
@@ -84,6 +85,10 @@ pub struct BodyScene {
     pub initial_angular_velocity: DVec3,
     /// Its own material.
     pub material: MaterialOverride,
+    /// What other bodies meet of it.
+    pub surface: Surface,
+    /// What moves it.
+    pub motion: MotionScene,
     /// How often and where it is repeated.
     pub copies: Option<Copies>,
 }
@@ -117,6 +122,43 @@ pub enum MassScene {
     Density(f64),
 }
 
+/// The key that says what moves a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum MotionScene {
+    /// `"free"`: forces.
+    #[default]
+    Free,
+    /// `"fixed"`: it stands still.
+    Fixed {
+        /// Velocity of its surface along itself (m/s, body axes).
+        surface_velocity: DVec3,
+    },
+    /// `"prescribed"`: it keeps the velocities that it starts with.
+    Prescribed(Prescribed),
+}
+
+impl MotionScene {
+    /// Its name in scene files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Fixed { .. } => "fixed",
+            Self::Prescribed(_) => "prescribed",
+        }
+    }
+
+    /// As the physics takes it.
+    pub fn motion(&self) -> Motion {
+        match *self {
+            Self::Free => Motion::Free,
+            Self::Fixed { surface_velocity } => {
+                Motion::Prescribed(Prescribed { oscillation: None, surface_velocity })
+            }
+            Self::Prescribed(prescribed) => Motion::Prescribed(prescribed),
+        }
+    }
+}
+
 /// `copies`: a lattice of bodies, centred on the body's place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Copies {
@@ -144,6 +186,13 @@ impl Default for OutputScene {
 }
 
 impl Scene {
+    /// Whether there are several bodies, none of which has a surface that others could meet.
+    pub fn bodies_pass_through(&self) -> bool {
+        let count: u64 =
+            self.bodies.iter().map(|b| b.copies.as_ref().map_or(1, Copies::total)).sum();
+        count > 1 && self.bodies.iter().all(|body| body.surface == Surface::None)
+    }
+
     /// How many steps the run takes: the whole number nearest to duration/dt.
     pub fn step_count(&self) -> u64 {
         (self.duration / self.dt).round() as u64

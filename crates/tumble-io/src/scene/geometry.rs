@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tumble::{MassModel, Mesh, Primitive, Sampling, Shape, ShapeError};
+use tumble::{MassModel, Mesh, Primitive, Sampling, Shape, ShapeError, Surface, ball_integrals};
 
 use super::description::{BodyScene, Geometry, MassScene};
 use super::reader::{Range, Reader};
@@ -131,6 +131,9 @@ pub fn make(body: &mut BodyScene, folder: &Path) -> Result<Made, GeometryError> 
         *vertex *= body.scale;
     }
     let bare = matches!(body.geometry, Geometry::Particles(_));
+    if let (true, Some(radius)) = (bare, solid_balls(body)) {
+        return clump(body, mesh, radius);
+    }
     let shape =
         if bare && body.sampling == Sampling::Vertices && body.mass_model == MassModel::Particles {
             Shape::of_particles(&mesh.vertices)
@@ -139,6 +142,30 @@ pub fn make(body: &mut BodyScene, folder: &Path) -> Result<Made, GeometryError> 
         };
     let shape = shape.map_err(|error| blame(guilty_key(body, &error), error))?;
     let mass = mass(body, &mesh, &shape)?;
+    Ok(Made { shape: Arc::new(shape), mass })
+}
+
+/// The radius of the solid balls (m) that a body consists of, if it does.
+fn solid_balls(body: &BodyScene) -> Option<f64> {
+    let is_solid = body.mass_model == MassModel::Solid && body.sampling == Sampling::Vertices;
+    match body.surface {
+        Surface::Spheres { radius } if is_solid => Some(radius),
+        _ => None,
+    }
+}
+
+/// A body of solid balls about its particles; what several of them share weighs once.
+fn clump(body: &BodyScene, points: Mesh, radius: f64) -> Result<Made, GeometryError> {
+    let places = &points.vertices;
+    let union = ball_integrals(places, radius).map_err(|error| blame("particle_radius", error))?;
+    let gyration = union.inertia() * (1.0 / union.measure);
+    let shape = Shape::of_distribution(places, Mesh::default(), union.centre, gyration);
+    let shape = shape.map_err(|error| blame(guilty_key(body, &error), error))?;
+    let mass = match body.mass {
+        MassScene::Particle(mass) => mass * shape.moments().count,
+        MassScene::Total(mass) => mass,
+        MassScene::Density(density) => density * union.measure,
+    };
     Ok(Made { shape: Arc::new(shape), mass })
 }
 

@@ -224,10 +224,10 @@ fn owners(scene: &Scene) -> BTreeMap<String, usize> {
     scene.bodies.iter().enumerate().flat_map(names).collect()
 }
 
-/// Two bodies with the same look have the same shape and mass.
+/// Two bodies with the same look have the same shape, mass and surface.
 fn look(body: &BodyScene) -> String {
-    let BodyScene { geometry, scale, sampling, mass_model, mass, .. } = body;
-    format!("{geometry:?} {scale:?} {sampling:?} {mass_model:?} {mass:?}")
+    let BodyScene { geometry, scale, sampling, mass_model, mass, surface, .. } = body;
+    format!("{geometry:?} {scale:?} {sampling:?} {mass_model:?} {mass:?} {surface:?}")
 }
 
 /// The body, or all its copies.
@@ -247,6 +247,8 @@ fn bodies(scene: &BodyScene, made: &Made) -> Vec<Body> {
                 .velocity(scene.initial_velocity)
                 .angular_velocity(scene.initial_angular_velocity)
                 .material(scene.material)
+                .surface(scene.surface)
+                .motion(scene.motion.motion())
         })
         .collect()
 }

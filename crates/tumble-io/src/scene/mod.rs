@@ -9,15 +9,17 @@ mod copies;
 mod description;
 mod geometry;
 mod load;
+mod motion;
 mod problem;
 mod read;
 mod reader;
+mod surface;
 mod tree;
 mod write;
 
 pub use builtin::{BUILTIN, Builtin, builtin};
 pub use description::{
-    BodyScene, BoxScene, Copies, Geometry, MassScene, OutputScene, Scene, WallScene,
+    BodyScene, BoxScene, Copies, Geometry, MassScene, MotionScene, OutputScene, Scene, WallScene,
 };
 pub use load::{LoadOptions, Loaded, load_builtin, load_file, load_text};
 pub use problem::{SceneError, Source};

@@ -1,9 +1,12 @@
 //! A scene as TOML again, every default written out.
 
 use toml::{Table, Value};
-use tumble::{DQuat, DVec3, Damping, MaterialOverride, Primitive, Sampling, WallBox, WallPlane};
+use tumble::{
+    DQuat, DVec3, Damping, MaterialOverride, Oscillation, Primitive, Sampling, Surface, WallBox,
+    WallPlane,
+};
 
-use super::description::{BodyScene, Geometry, MassScene, Scene};
+use super::description::{BodyScene, Geometry, MassScene, MotionScene, Scene};
 use super::geometry::{MASS_MODELS, ShapeScene};
 
 /// How every scene that a run wrote begins.
@@ -126,6 +129,8 @@ fn body(body: &BodyScene) -> Table {
     put(&mut table, "initial_velocity", vector(body.initial_velocity));
     put(&mut table, "initial_angular_velocity", vector(body.initial_angular_velocity));
     put_material(&mut table, &body.material);
+    put_surface(&mut table, body.surface);
+    put_motion(&mut table, &body.motion);
     if let Some(copies) = &body.copies {
         let mut of = Table::new();
         put(&mut of, "count", copies.count.map(i64::from).to_vec());
@@ -136,6 +141,37 @@ fn body(body: &BodyScene) -> Table {
         put(&mut table, "copies", of);
     }
     table
+}
+
+fn put_surface(table: &mut Table, surface: Surface) {
+    match surface {
+        Surface::None => put(table, "surface", "none"),
+        Surface::Mesh => put(table, "surface", "mesh"),
+        Surface::Spheres { radius } => {
+            put(table, "surface", "spheres");
+            put(table, "particle_radius", radius);
+        }
+    }
+}
+
+fn put_motion(table: &mut Table, motion: &MotionScene) {
+    put(table, "motion", motion.name());
+    match motion {
+        MotionScene::Free => {}
+        MotionScene::Fixed { surface_velocity } => {
+            put(table, "surface_velocity", vector(*surface_velocity));
+        }
+        MotionScene::Prescribed(prescribed) => {
+            put(table, "surface_velocity", vector(prescribed.surface_velocity));
+            if let Some(Oscillation { amplitude, frequency, phase }) = prescribed.oscillation {
+                let mut of = Table::new();
+                put(&mut of, "amplitude", vector(amplitude));
+                put(&mut of, "frequency", frequency);
+                put(&mut of, "phase", phase);
+                put(table, "oscillation", of);
+            }
+        }
+    }
 }
 
 fn put_shape(table: &mut Table, shape: &ShapeScene) {

@@ -1,5 +1,6 @@
 //! What a body is made of: its mesh, its particles, its mass properties.
 
+mod balls;
 mod body_shape;
 mod closedness;
 mod descend;
@@ -11,6 +12,7 @@ mod primitive;
 mod sampling;
 mod tree;
 
+pub use balls::{BallsError, ball_integrals};
 pub use body_shape::{MassModel, ParticleMoments, Shape, ShapeError};
 pub(crate) use closedness::weld;
 pub use closedness::{Closedness, EdgeFault, FaultyEdge};
