@@ -64,10 +64,10 @@ struct Problem {
 }
 
 fn is_finite(state: &BodyState) -> bool {
-    state.position.is_finite()
-        && state.velocity.is_finite()
-        && state.orientation.is_finite()
-        && state.angular_momentum.is_finite()
+    // zero times what is not finite is NaN, and so is whatever it is added to
+    let sum = (state.position + state.velocity + state.angular_momentum) * 0.0;
+    let q = state.orientation * 0.0;
+    sum.x + sum.y + sum.z + (q.x + q.y) + (q.z + q.w) == 0.0
 }
 
 /// The first quantity that is not finite, and its value.

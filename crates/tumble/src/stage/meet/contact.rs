@@ -128,10 +128,16 @@ impl Contact {
         self.stretch = self.before + (u - n * u.dot(n)) * h;
     }
 
-    /// Adds the forces of this contact with the velocities of the bodies; see [`crate::stage::contact`] for
-    /// the law.
+    /// Adds the forces of this contact with the velocities of the bodies; see [`crate::stage::contact()`] for the
+    /// law. A first look, which only foretells velocities, leaves out what is kept and accounted for.
     #[inline(always)]
-    pub fn push(&mut self, law: &ContactLaw, first: &Pose, second: &Pose, sum: &mut PairForces) {
+    pub fn push<const FIRST: bool>(
+        &mut self,
+        law: &ContactLaw,
+        first: &Pose,
+        second: &Pose,
+        sum: &mut PairForces,
+    ) {
         let n = self.normal;
         let u = self.relative_velocity(first, second);
         let u_n = u.dot(n);
@@ -141,29 +147,47 @@ impl Contact {
         let mut brake = n * (push - spring);
         if law.friction > 0.0 {
             let limit = law.friction * push;
-            let trial = law.friction_spring * self.stretch.length();
-            let mut hold = self.stretch * -law.friction_spring;
-            if trial > limit {
-                let part = limit / trial;
-                self.held = self.stretch * part;
-                hold *= part;
-                // the work of friction on the way from stretch to stretch, less what the spring takes up
-                sum.slip += 0.5
-                    * law.friction_spring
-                    * (self.before + self.held).dot(self.stretch - self.held);
-            } else {
-                self.held = self.stretch;
-            }
-            let tangential = within(hold, (n * u_n - u) * law.friction_damping, limit);
+            let (hold, tangential) = self.hold::<FIRST>(law, u - n * u_n, limit, sum);
             force += hold + tangential;
             brake += tangential;
-            let belt = second.belt - first.belt;
-            sum.belt_power += (hold + tangential).dot(belt);
-            sum.belt_loss += tangential.dot(belt);
+            if !FIRST {
+                let belt = second.belt - first.belt;
+                sum.belt_power += (hold + tangential).dot(belt);
+                sum.belt_loss += tangential.dot(belt);
+            }
         }
         sum.all.add(self, force);
-        sum.dashpot.add(self, brake);
-        sum.max_depth = sum.max_depth.max(self.depth);
+        if !FIRST {
+            sum.dashpot.add(self, brake);
+            sum.max_depth = sum.max_depth.max(self.depth);
+        }
+    }
+
+    /// The tangential spring, as much of it as the limit (N) lets hold, and the dashpot within what that leaves, at a
+    /// velocity along the contact (m/s).
+    #[inline(always)]
+    fn hold<const FIRST: bool>(
+        &mut self,
+        law: &ContactLaw,
+        velocity: DVec3,
+        limit: f64,
+        sum: &mut PairForces,
+    ) -> (DVec3, DVec3) {
+        let k = law.friction_spring;
+        let mut held = self.stretch;
+        let square = k * k * held.length_squared();
+        if square > limit * limit {
+            held *= limit / square.sqrt();
+            if !FIRST {
+                // the work of friction on the way from stretch to stretch, less what the spring takes up
+                sum.slip += 0.5 * k * (self.before + held).dot(self.stretch - held);
+            }
+        }
+        if !FIRST {
+            self.held = held;
+        }
+        let hold = held * -k;
+        (hold, within(hold, velocity * -law.friction_damping, limit))
     }
 }
 

@@ -127,14 +127,14 @@ impl Found {
         springs.release_all();
     }
 
-    /// The forces of all contacts with the velocities of `poses`.
-    pub fn push(&mut self, near: &Near, poses: &[Pose]) {
+    /// The forces of all contacts with the velocities of `poses`; of a first look the totals alone.
+    pub fn push<const FIRST: bool>(&mut self, near: &Near, poses: &[Pose]) {
         for touching in &mut self.touching {
             let pair = &near.pairs[touching.pair as usize];
             let (first, second) = ends(poses, pair);
             touching.forces = PairForces::default();
             for contact in &mut self.contacts[touching.start as usize..touching.end as usize] {
-                contact.push(&pair.law, first, second, &mut touching.forces);
+                contact.push::<FIRST>(&pair.law, first, second, &mut touching.forces);
             }
         }
     }

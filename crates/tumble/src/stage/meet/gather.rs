@@ -58,7 +58,7 @@ impl Meeting {
         parallel::each_body(&mut self.poses, |first, poses| {
             for (index, pose) in (first..).zip(poses) {
                 let body = &model.bodies[index];
-                if body.is_free() && sums[index].max_depth > 0.0 {
+                if body.is_free() && sums[index].all != Wrench::default() {
                     let wrench = sums[index].all + others[index].contact();
                     pose.velocity += wrench.force * (0.5 * h / body.mass);
                     let spin = body.angular_velocity(pose.rotation, wrench.torque);

@@ -41,14 +41,14 @@ pub fn meet(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     let meeting = &mut scratch.meeting;
     meeting.place(model, state);
     meeting.find(model, &state.pair_springs, h);
-    meeting.push();
-    meeting.gather();
     let is_damped = |body: &BodyModel| body.pair_material.is_damped();
     if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
-        meeting.half_kick(model, &scratch.forces, h);
-        meeting.push();
+        meeting.push::<true>();
         meeting.gather();
+        meeting.half_kick(model, &scratch.forces, h);
     }
+    meeting.push::<false>();
+    meeting.gather();
     meeting.give(&mut scratch.forces);
 }
 
@@ -111,9 +111,11 @@ impl Meeting {
         });
     }
 
-    fn push(&mut self) {
+    fn push<const FIRST: bool>(&mut self) {
         let (poses, chunks) = (&self.poses, &self.lists.chunks);
-        parallel::each(&mut self.found, |index, found| found.push(&chunks[index], poses));
+        parallel::each(&mut self.found, |index, found| {
+            found.push::<FIRST>(&chunks[index], poses);
+        });
     }
 
     /// Energy in the springs between bodies and between spheres and walls, normal and tangential (J).
