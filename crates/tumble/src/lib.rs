@@ -35,6 +35,7 @@
 #![warn(missing_debug_implementations)]
 
 mod builder;
+mod distance;
 mod energy;
 mod error;
 mod flight;
@@ -55,6 +56,7 @@ mod wall;
 mod world;
 
 pub use builder::{Body, WorldBuilder};
+pub use distance::{Nearest, SignedDistance, SurfaceError};
 pub use energy::Energy;
 pub use error::{BuildError, BuildErrors, StepError};
 pub use flight::DragModes;

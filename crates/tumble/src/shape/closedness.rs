@@ -100,7 +100,7 @@ impl std::fmt::Display for Closedness {
 }
 
 /// For each vertex the smallest index of a vertex at the same coordinates.
-pub(super) fn weld(vertices: &[DVec3]) -> Vec<u32> {
+pub(crate) fn weld(vertices: &[DVec3]) -> Vec<u32> {
     // adding zero turns -0 into 0, so that equal coordinates have equal bits
     let bits = |x: f64| (x + 0.0).to_bits();
     let mut sorted: Vec<([u64; 3], u32)> =
@@ -166,7 +166,7 @@ impl Passages {
 
 impl Mesh {
     /// The corners of a triangle (m); `None` where one is missing or not finite.
-    pub(super) fn corners(&self, triangle: [u32; 3]) -> Option<[DVec3; 3]> {
+    pub(crate) fn corners(&self, triangle: [u32; 3]) -> Option<[DVec3; 3]> {
         let corner = |i: u32| self.vertices.get(i as usize).copied().filter(|v| v.is_finite());
         Some([corner(triangle[0])?, corner(triangle[1])?, corner(triangle[2])?])
     }

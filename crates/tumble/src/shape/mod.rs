@@ -12,6 +12,7 @@ mod sampling;
 mod tree;
 
 pub use body_shape::{MassModel, ParticleMoments, Shape, ShapeError};
+pub(crate) use closedness::weld;
 pub use closedness::{Closedness, EdgeFault, FaultyEdge};
 pub(crate) use descend::RampSums;
 pub use integrals::{Integrals, OpenMesh, ShellError};

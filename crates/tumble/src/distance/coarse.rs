@@ -1,0 +1,63 @@
+//! A coarse grid of signed distances: tells at once of points far outside that they are.
+//!
+//! A signed distance grows no faster than one goes, so that the distance at a cell's centre bounds it all around.
+
+use glam::DVec3;
+
+use super::tree::Extent;
+
+/// Cells along the longest side of the box.
+const CELLS: f64 = 16.0;
+/// What rounding may have added to a distance, in units of the box's longest side.
+const ROUNDING: f64 = 1e-12;
+
+/// The grid.
+#[derive(Clone, Debug)]
+pub(super) struct Coarse {
+    low: DVec3,
+    /// Edge of a cell (m).
+    edge: f64,
+    counts: [usize; 3],
+    /// Signed distances of the cells' centres, less their rounding (m).
+    distances: Vec<f64>,
+}
+
+impl Coarse {
+    /// Asks for the signed distance at the centre of each cell of a grid over a box.
+    pub fn over(bounds: &Extent, mut distance: impl FnMut(DVec3) -> f64) -> Self {
+        let sides = bounds.high - bounds.low;
+        let edge = sides.max_element() / CELLS;
+        let counts = sides.to_array().map(|side| ((side / edge).ceil() as usize).max(1));
+        let mut grid = Self { low: bounds.low, edge, counts, distances: Vec::new() };
+        let rounding = ROUNDING * sides.max_element();
+        grid.distances.reserve_exact(counts.iter().product());
+        for z in 0..counts[2] {
+            for y in 0..counts[1] {
+                for x in 0..counts[0] {
+                    grid.distances.push(distance(grid.centre([x, y, z])) - rounding);
+                }
+            }
+        }
+        grid
+    }
+
+    fn centre(&self, cell: [usize; 3]) -> DVec3 {
+        self.low + DVec3::from_array(cell.map(|i| i as f64 + 0.5)) * self.edge
+    }
+
+    /// The signed distance of a point is at least this (m).
+    #[inline]
+    pub fn at_least(&self, point: DVec3) -> f64 {
+        let place = (point - self.low) / self.edge;
+        // the conversion saturates
+        let cell = [0, 1, 2].map(|axis| (place[axis] as usize).min(self.counts[axis] - 1));
+        let [x, y, z] = cell;
+        let distance = self.distances[(z * self.counts[1] + y) * self.counts[0] + x];
+        distance - self.centre(cell).distance(point)
+    }
+
+    /// Bytes in use.
+    pub fn memory(&self) -> usize {
+        size_of::<f64>() * self.distances.capacity()
+    }
+}

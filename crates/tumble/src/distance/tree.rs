@@ -1,0 +1,373 @@
+//! A tree of boxes over the triangles: each node has up to four children, and a leaf is a group of four triangles.
+
+use fearless_simd::{Level, Simd, dispatch, f64x4, prelude::*};
+use glam::DVec3;
+
+use super::triangle::{Frame, Group, WIDTH};
+
+/// Children that can wait at once: three a level, and a tree of 2³² triangles has 16 levels.
+const WAITING: usize = 64;
+/// Marks a child that is a group.
+const LEAF: u32 = 1 << 31;
+/// By how much of its longest side the box of a triangle is larger than the triangle: more than what
+/// rounding can take from the distance, so that no order of the search leaves out the closest.
+const SLACK: f64 = 1e-13;
+/// The same for what is far from the triangle, relative to the squared distance.
+const CLOSE: f64 = 1.0 + 1e-12;
+
+/// The boxes of up to four children (m); those that are missing are at infinity.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Node {
+    low: [[f64; WIDTH]; 3],
+    high: [[f64; WIDTH]; 3],
+    /// Nodes, or groups with [`LEAF`] added.
+    child: [u32; WIDTH],
+}
+
+/// A box (m).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Extent {
+    pub low: DVec3,
+    pub high: DVec3,
+}
+
+impl Extent {
+    /// The box around nothing.
+    pub const NONE: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
+
+    /// The box around both.
+    pub fn with(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
+    }
+
+    /// The distance from a point outside (m), or zero.
+    #[inline(always)]
+    pub fn distance(&self, point: DVec3) -> f64 {
+        (self.low - point).max(point - self.high).max(DVec3::ZERO).length()
+    }
+}
+
+/// What is being sorted into the tree.
+struct Item {
+    centre: DVec3,
+    around: Extent,
+    /// Index in the mesh.
+    index: u32,
+    frame: Frame,
+}
+
+/// A triangle's slot, and its squared distance (m²).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    pub slot: usize,
+    pub squared: f64,
+}
+
+/// A ray: where from, where to, and the part of it that counts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray {
+    pub from: DVec3,
+    pub along: DVec3,
+    /// In units of `along`.
+    pub part: [f64; 2],
+}
+
+/// The tree.
+#[derive(Clone, Debug)]
+pub(super) struct Tree {
+    nodes: Vec<Node>,
+    groups: Vec<Group>,
+    /// How many triangles there are.
+    count: usize,
+}
+
+impl Tree {
+    /// Sorts triangles, at least one, with their indices in the mesh into a tree.
+    pub fn build(triangles: impl Iterator<Item = (u32, Frame)>) -> Self {
+        let mut items: Vec<Item> = triangles.map(|(index, frame)| Item::of(index, frame)).collect();
+        let groups = items.len().div_ceil(WIDTH);
+        let mut tree = Self {
+            nodes: Vec::with_capacity(groups / 2 + 1),
+            groups: Vec::with_capacity(groups),
+            count: items.len(),
+        };
+        tree.grow(&mut items);
+        tree
+    }
+
+    /// Adds a node over the items, and all that is under it.
+    fn grow(&mut self, items: &mut [Item]) -> u32 {
+        let here = self.nodes.len();
+        self.nodes.push(Node::EMPTY);
+        let (left, right) = halved(items);
+        let ((a, b), (c, d)) = (halved(left), halved(right));
+        let parts = [a, b, c, d].into_iter().filter(|part| !part.is_empty());
+        for (lane, part) in parts.enumerate() {
+            let around = part.iter().fold(Extent::NONE, |all, item| all.with(item.around));
+            let child =
+                if part.len() <= WIDTH { self.add_group(part) | LEAF } else { self.grow(part) };
+            self.nodes[here].set(lane, around, child);
+        }
+        here as u32
+    }
+
+    fn add_group(&mut self, items: &mut [Item]) -> u32 {
+        // the same order within the group whatever the selection above did
+        items.sort_unstable_by_key(|item| item.index);
+        let members: Vec<(u32, Frame)> = items.iter().map(|item| (item.index, item.frame)).collect();
+        self.groups.push(Group::of(&members));
+        self.groups.len() as u32 - 1
+    }
+
+    /// Calls `visit(slot, index in the mesh)` for each triangle, by slot.
+    pub fn each_slot(&self, mut visit: impl FnMut(usize, u32)) {
+        for (group, members) in self.groups.iter().enumerate() {
+            for (lane, &index) in members.index.iter().enumerate() {
+                // what fills up a group repeats its first
+                if lane == 0 || index != members.index[0] {
+                    visit(group * WIDTH + lane, index);
+                }
+            }
+        }
+    }
+
+    /// How many slots there are; some may be unused.
+    pub fn slots(&self) -> usize {
+        self.groups.len() * WIDTH
+    }
+
+    /// How many triangles there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The triangle in a slot.
+    #[inline(always)]
+    pub fn frame(&self, slot: usize) -> Frame {
+        self.groups[slot / WIDTH].frame(slot % WIDTH)
+    }
+
+    /// The index in the mesh of the triangle in a slot.
+    #[inline(always)]
+    pub fn index(&self, slot: usize) -> u32 {
+        self.groups[slot / WIDTH].index[slot % WIDTH]
+    }
+
+    /// Bytes in use.
+    pub fn memory(&self) -> usize {
+        size_of::<Node>() * self.nodes.capacity() + size_of::<Group>() * self.groups.capacity()
+    }
+
+    /// The triangle closest to a point, of equally close ones that with the lowest index; none if all are
+    /// farther than the root of `most` (m²). The group of slot `hint` is looked at first.
+    pub fn nearest(
+        &self,
+        level: Level,
+        point: DVec3,
+        most: f64,
+        hint: Option<usize>,
+    ) -> Option<Found> {
+        dispatch!(level, simd => self.nearest_in(simd, point, most, hint))
+    }
+
+    #[inline(always)]
+    fn nearest_in<S: Simd>(
+        &self,
+        simd: S,
+        point: DVec3,
+        most: f64,
+        hint: Option<usize>,
+    ) -> Option<Found> {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut best = Best::new(most);
+                let point = point.to_array().map(|x| f64x4::splat(simd, x));
+                let hint = hint.map(|slot| slot / WIDTH).filter(|&group| group < self.groups.len());
+                if let Some(group) = hint {
+                    best.look_at(group, &self.groups[group].squared(simd, point), self);
+                }
+                let mut waiting = [(0.0, 0u32); WAITING];
+                let mut count = 1;
+                while count > 0 {
+                    count -= 1;
+                    let (squared, child) = waiting[count];
+                    if squared > best.limit {
+                        continue;
+                    }
+                    if child & LEAF != 0 {
+                        let group = (child & !LEAF) as usize;
+                        if hint != Some(group) {
+                            best.look_at(group, &self.groups[group].squared(simd, point), self);
+                        }
+                        continue;
+                    }
+                    let node = &self.nodes[child as usize];
+                    let squared = node.squared(simd, point);
+                    // the nearest goes on top
+                    let start = count;
+                    for (squared, child) in squared.into_iter().zip(node.child) {
+                        if squared > best.limit {
+                            continue;
+                        }
+                        let mut at = count;
+                        while at > start && waiting[at - 1].0 < squared {
+                            waiting[at] = waiting[at - 1];
+                            at -= 1;
+                        }
+                        waiting[at] = (squared, child);
+                        count += 1;
+                    }
+                }
+                (best.slot != usize::MAX).then_some(Found { slot: best.slot, squared: best.squared })
+            },
+        )
+    }
+
+    /// Calls `hit(slot, frame)` for each triangle whose box a ray may meet; it returns how much of the ray is
+    /// still of interest, in units of its vector.
+    pub fn along_ray(&self, ray: &Ray, mut hit: impl FnMut(usize, &Frame) -> f64) {
+        let mut end = ray.part[1];
+        let mut waiting = [0u32; WAITING];
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let child = waiting[count];
+            if child & LEAF != 0 {
+                let group = (child & !LEAF) as usize;
+                for lane in 0..WIDTH {
+                    end = end.min(hit(group * WIDTH + lane, &self.groups[group].frame(lane)));
+                }
+                continue;
+            }
+            let node = &self.nodes[child as usize];
+            for (lane, &child) in node.child.iter().enumerate() {
+                if node.meets(lane, ray, end) {
+                    waiting[count] = child;
+                    count += 1;
+                }
+            }
+        }
+    }
+
+    /// The sum of the solid angles of all triangles over 4π: one inside, zero outside, between where there are holes.
+    ///
+    /// Source: A. Jacobson, L. Kavan and O. Sorkine-Hornung, ACM Trans. Graph. 32 (2013) 33.
+    pub fn winding(&self, point: DVec3) -> f64 {
+        let mut sum = 0.0;
+        self.each_slot(|slot, _| sum += self.frame(slot).solid_angle(point));
+        sum / (4.0 * std::f64::consts::PI)
+    }
+}
+
+/// Halves a slice across the longest side of the box of their centres, each half whole groups but the last.
+fn halved(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
+    let groups = items.len().div_ceil(WIDTH);
+    if groups < 2 {
+        return items.split_at_mut(items.len());
+    }
+    let (low, high) = items.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), i| {
+        (low.min(i.centre), high.max(i.centre))
+    });
+    let axis = (high - low).max_position();
+    let middle = groups.div_ceil(2) * WIDTH;
+    // the index decides between equals: the order is the same on every machine
+    items.select_nth_unstable_by(middle, |a, b| {
+        a.centre[axis].total_cmp(&b.centre[axis]).then(a.index.cmp(&b.index))
+    });
+    items.split_at_mut(middle)
+}
+
+impl Item {
+    fn of(index: u32, frame: Frame) -> Self {
+        let [a, b, c] = frame.corners();
+        let slack = DVec3::splat(SLACK * frame.length);
+        let around =
+            Extent { low: a.min(b).min(c) - slack, high: a.max(b).max(c) + slack };
+        Self { centre: 0.5 * around.low + 0.5 * around.high, around, index, frame }
+    }
+}
+
+impl Node {
+    const EMPTY: Self = Self {
+        low: [[f64::INFINITY; WIDTH]; 3],
+        high: [[f64::NEG_INFINITY; WIDTH]; 3],
+        child: [0; WIDTH],
+    };
+
+    fn set(&mut self, lane: usize, around: Extent, child: u32) {
+        for axis in 0..3 {
+            self.low[axis][lane] = around.low[axis];
+            self.high[axis][lane] = around.high[axis];
+        }
+        self.child[lane] = child;
+    }
+
+    /// The squared distances (m²) of the boxes from a point.
+    #[inline(always)]
+    fn squared<S: Simd>(&self, simd: S, point: [f64x4<S>; 3]) -> [f64; WIDTH] {
+        let zero = f64x4::splat(simd, 0.0);
+        let [x, y, z] = [0, 1, 2].map(|axis| {
+            let below = f64x4::simd_from(simd, self.low[axis]) - point[axis];
+            let above = point[axis] - f64x4::simd_from(simd, self.high[axis]);
+            below.max(above).max(zero)
+        });
+        (x * x + y * y + z * z).into()
+    }
+
+    /// Whether the box of a child may meet a ray.
+    fn meets(&self, lane: usize, ray: &Ray, end: f64) -> bool {
+        let [mut from, mut to] = [ray.part[0], end];
+        for axis in 0..3 {
+            let (low, high) = (self.low[axis][lane], self.high[axis][lane]);
+            let (start, along) = (ray.from[axis], ray.along[axis]);
+            if along == 0.0 {
+                if start < low || start > high {
+                    return false;
+                }
+                continue;
+            }
+            let (a, b) = ((low - start) / along, (high - start) / along);
+            from = from.max(a.min(b));
+            to = to.min(a.max(b));
+        }
+        // a box that is missing is at infinity, and rounding must not take one that is not
+        let slack = 1e-12 * from.abs().max(to.abs());
+        self.low[0][lane] <= self.high[0][lane] && from <= to + slack
+    }
+}
+
+/// The closest so far.
+struct Best {
+    slot: usize,
+    index: u32,
+    squared: f64,
+    /// What is farther need not be looked at.
+    limit: f64,
+}
+
+impl Best {
+    #[inline(always)]
+    fn new(most: f64) -> Self {
+        // boxes that are missing are at infinity, and farther than this
+        let most = most.min(0.5 * f64::MAX);
+        Self { slot: usize::MAX, index: u32::MAX, squared: most, limit: most * CLOSE }
+    }
+
+    #[inline(always)]
+    fn look_at(&mut self, group: usize, squared: &[f64; WIDTH], tree: &Tree) {
+        for (lane, &squared) in squared.iter().enumerate() {
+            if squared > self.squared {
+                continue;
+            }
+            let index = tree.groups[group].index[lane];
+            if squared < self.squared || index < self.index {
+                self.slot = group * WIDTH + lane;
+                self.index = index;
+                self.squared = squared;
+                self.limit = squared * CLOSE;
+            }
+        }
+    }
+}
