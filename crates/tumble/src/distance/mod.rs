@@ -20,7 +20,7 @@ use coarse::Coarse;
 pub use error::SurfaceError;
 use normals::Pseudonormals;
 use outline::Outline;
-use tree::{Extent, Found, Tree};
+use tree::{Extent, Tree};
 use triangle::{FACE, Foot};
 
 /// Marks triangles that do not count.
@@ -134,8 +134,8 @@ impl SignedDistance {
     pub fn query(&self, point: DVec3, hint: u32, within: f64) -> Option<Nearest> {
         let most = self.search_radius(point, within)?;
         let hint = self.slots.get(hint as usize).map(|&slot| slot as usize);
-        let found = self.tree.nearest(self.level, point, most * most, hint)?;
-        let nearest = self.judge(point, &found);
+        let slot = self.tree.nearest(self.level, point, most * most, hint)?;
+        let nearest = self.judge(point, slot);
         (nearest.distance < 0.0 || nearest.distance <= within).then_some(nearest)
     }
 
@@ -158,12 +158,12 @@ impl SignedDistance {
 
     /// The sign and the gradient from the closest triangle.
     #[inline]
-    fn judge(&self, point: DVec3, found: &Found) -> Nearest {
-        let frame = self.tree.frame(found.slot);
+    fn judge(&self, point: DVec3, slot: usize) -> Nearest {
+        let frame = self.tree.frame(slot);
         let Foot { feature, offset, squared } = frame.foot(point);
         let away = frame.turned_back(offset);
         let distance = if feature == FACE { offset.z.abs() } else { squared.sqrt() };
-        let normals = &self.normals[found.slot];
+        let normals = &self.normals[slot];
         let normal = if feature == FACE { frame.normal } else { normals.of(feature) };
 
         let outside = if self.bounds.distance(point) > 0.0 {
@@ -184,7 +184,7 @@ impl SignedDistance {
             away * (sign / distance)
         };
         // adding zero turns -0 into 0
-        Nearest { distance: sign * distance + 0.0, gradient, triangle: self.tree.index(found.slot) }
+        Nearest { distance: sign * distance + 0.0, gradient, triangle: self.tree.index(slot) }
     }
 
     /// Whether a ball is sure to be outside the solid: no point of it inside or on the surface.

@@ -221,30 +221,49 @@ impl Group {
     /// The squared distances (m²) to a point.
     #[inline(always)]
     pub fn squared<S: Simd>(&self, simd: S, point: [f64x4<S>; 3]) -> [f64; WIDTH] {
-        let load = |lanes: &[f64; WIDTH]| f64x4::simd_from(simd, *lanes);
         let zero = f64x4::splat(simd, 0.0);
         let one = f64x4::splat(simd, 1.0);
 
         // into the frame
-        let [x, y, z] = [0, 1, 2].map(|axis| point[axis] - load(&self.origin[axis]));
-        let dot = |v: &[[f64; WIDTH]; 3]| x * load(&v[0]) + y * load(&v[1]) + z * load(&v[2]);
-        let (x, y, z) = (dot(&self.along), dot(&self.across), dot(&self.normal));
-        let length = load(&self.length);
-        let (cx, cy) = (load(&self.apex[0]), load(&self.apex[1]));
+        let [x, y, z] = point;
+        let away = [
+            x - load(simd, &self.origin[0]),
+            y - load(simd, &self.origin[1]),
+            z - load(simd, &self.origin[2]),
+        ];
+        let x = dot(simd, away, &self.along);
+        let y = dot(simd, away, &self.across);
+        let z = dot(simd, away, &self.normal);
+        let length = load(simd, &self.length);
+        let (cx, cy) = (load(simd, &self.apex[0]), load(simd, &self.apex[1]));
         let (bx, px) = (cx - length, x - length);
 
         // to each side, and whether the face is closer
         let ab = x.max(zero).min(length);
-        let ca = ((x * cx + y * cy) * load(&self.inverse[0])).max(zero).min(one);
-        let bc = ((px * bx + y * cy) * load(&self.inverse[1])).max(zero).min(one);
-        let apart = |x: f64x4<S>, y: f64x4<S>| x * x + y * y;
-        let to_ab = apart(x - ab, y);
-        let to_bc = apart(px - bc * bx, y - bc * cy);
-        let to_ca = apart(x - ca * cx, y - ca * cy);
+        let ca = ((x * cx + y * cy) * load(simd, &self.inverse[0])).max(zero).min(one);
+        let bc = ((px * bx + y * cy) * load(simd, &self.inverse[1])).max(zero).min(one);
+        let to_ab = squared(x - ab, y);
+        let to_bc = squared(px - bc * bx, y - bc * cy);
+        let to_ca = squared(x - ca * cx, y - ca * cy);
         let inside = y.simd_ge(zero)
             & (x * cy - y * cx).simd_ge(zero)
             & (bx * y - cy * px).simd_ge(zero);
         let plane = inside.select(zero, to_ab.min(to_bc).min(to_ca));
         (plane + z * z).into()
     }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, lanes: &[f64; WIDTH]) -> f64x4<S> {
+    f64x4::simd_from(simd, *lanes)
+}
+
+#[inline(always)]
+fn dot<S: Simd>(simd: S, [x, y, z]: [f64x4<S>; 3], axis: &[[f64; WIDTH]; 3]) -> f64x4<S> {
+    x * load(simd, &axis[0]) + y * load(simd, &axis[1]) + z * load(simd, &axis[2])
+}
+
+#[inline(always)]
+fn squared<S: Simd>(x: f64x4<S>, y: f64x4<S>) -> f64x4<S> {
+    x * x + y * y
 }
