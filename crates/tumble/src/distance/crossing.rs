@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::triangle::Frame;
 use super::tree::{Ray, Tree};
+use super::triangle::Frame;
 
 /// How far beside a triangle a line still meets it, in units of its longest side: no line slips between two.
 const BESIDE: f64 = 1e-12;
 /// How many triangles [`thickness`] asks at most.
-const SAMPLE: usize = 1024;
+const SAMPLE: usize = 512;
 /// The part of the surface that is thinner than [`thickness`].
 const THIN_PART: f64 = 0.05;
 /// Nothing is thinner than this, in units of the size: parts that touch are not thin.

@@ -149,7 +149,7 @@ impl SignedDistance {
         if let Some(coarse) = &self.coarse {
             at_least = at_least.max(coarse.at_least(point));
         }
-        if at_least > within {
+        if at_least > within.max(0.0) {
             return None;
         }
         // only outside the surface is of no interest beyond that radius
@@ -166,7 +166,7 @@ impl SignedDistance {
         let normals = &self.normals[slot];
         let normal = if feature == FACE { frame.normal } else { normals.of(feature) };
 
-        let outside = if self.bounds.distance(point) > 0.0 {
+        let outside = if !self.bounds.contains(point) {
             true
         } else if normals.is_doubtful(feature) {
             self.tree.winding(point) <= 0.5
@@ -208,7 +208,7 @@ impl SignedDistance {
     /// A small but typical thickness of the solid (m): from the middle of a triangle straight inwards to where one leaves
     /// the solid; a twentieth of the surface, by area, has less below it.
     ///
-    /// Of large meshes 1024 triangles, spread evenly by area, are asked.
+    /// Of large meshes 512 triangles, spread evenly by area, are asked.
     pub fn thickness(&self) -> f64 {
         self.thickness
     }

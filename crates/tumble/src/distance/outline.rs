@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::SurfaceError;
-use super::triangle::Frame;
 use super::tree::Extent;
+use super::triangle::Frame;
 use crate::Mesh;
 use crate::shape::weld;
 
@@ -66,9 +66,10 @@ impl Outline {
             .filter(|(_, [a, b, c])| a != b && b != c && c != a)
             .collect();
         let places = |t: [u32; 3]| t.map(|i| mesh.vertices[i as usize]);
-        let bounds = corners.iter().flat_map(|&(_, t)| places(t)).fold(Extent::NONE, |all, p| {
-            all.with(Extent { low: p, high: p })
-        });
+        let bounds = corners
+            .iter()
+            .flat_map(|&(_, t)| places(t))
+            .fold(Extent::NONE, |all, p| all.with(Extent { low: p, high: p }));
         if corners.is_empty() {
             return Err(SurfaceError::NoTriangles);
         }

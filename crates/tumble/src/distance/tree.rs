@@ -41,6 +41,12 @@ impl Extent {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
+    /// Whether a point is in the box.
+    #[inline(always)]
+    pub fn contains(&self, point: DVec3) -> bool {
+        self.low.max(point).min(self.high) == point
+    }
+
     /// The distance from a point outside (m), or zero.
     #[inline(always)]
     pub fn distance(&self, point: DVec3) -> f64 {
@@ -108,7 +114,8 @@ impl Tree {
     fn add_group(&mut self, items: &mut [Item]) -> u32 {
         // the same order within the group whatever the selection above did
         items.sort_unstable_by_key(|item| item.index);
-        let members: Vec<(u32, Frame)> = items.iter().map(|item| (item.index, item.frame)).collect();
+        let members: Vec<(u32, Frame)> =
+            items.iter().map(|item| (item.index, item.frame)).collect();
         self.groups.push(Group::of(&members));
         self.groups.len() as u32 - 1
     }
@@ -205,8 +212,7 @@ impl Tree {
                     let squared = node.squared(simd, point);
                     // the nearest goes on top
                     let start = count;
-                    for lane in 0..WIDTH {
-                        let (squared, child) = (squared[lane], node.child[lane]);
+                    for (&squared, &child) in squared.iter().zip(&node.child) {
                         if squared > best.limit {
                             continue;
                         }
@@ -266,9 +272,10 @@ fn halved(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
     if groups < 2 {
         return items.split_at_mut(items.len());
     }
-    let (low, high) = items.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), i| {
-        (low.min(i.centre), high.max(i.centre))
-    });
+    let (low, high) =
+        items.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), i| {
+            (low.min(i.centre), high.max(i.centre))
+        });
     let axis = (high - low).max_position();
     let middle = groups.div_ceil(2) * WIDTH;
     // the index decides between equals: the order is the same on every machine
@@ -282,8 +289,7 @@ impl Item {
     fn of(index: u32, frame: Frame) -> Self {
         let [a, b, c] = frame.corners();
         let slack = DVec3::splat(SLACK * frame.length);
-        let around =
-            Extent { low: a.min(b).min(c) - slack, high: a.max(b).max(c) + slack };
+        let around = Extent { low: a.min(b).min(c) - slack, high: a.max(b).max(c) + slack };
         Self { centre: 0.5 * around.low + 0.5 * around.high, around, index, frame }
     }
 }
@@ -361,8 +367,12 @@ impl Best {
 
     #[inline(always)]
     fn look_at(&mut self, group: usize, squared: &[f64; WIDTH], tree: &Tree) {
-        for lane in 0..WIDTH {
-            let squared = squared[lane];
+        // most groups have nothing closer: one comparison for all
+        let [a, b, c, d] = *squared;
+        if a.min(b).min(c.min(d)) > self.squared {
+            return;
+        }
+        for (lane, &squared) in squared.iter().enumerate() {
             if squared > self.squared {
                 continue;
             }

@@ -19,6 +19,9 @@ pub(super) const SIDE: Feature = 1;
 /// The first of the corners a, b, c.
 pub(super) const CORNER: Feature = 4;
 
+/// Triangles lower than this part of their length get a normal from their frame, not the frame from the normal.
+const STOUT: f64 = 0.01;
+
 /// A triangle in its own frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
@@ -52,7 +55,12 @@ pub(super) struct Foot {
 /// The unit vector of any vector that is not zero, however small.
 fn direction(v: DVec3) -> DVec3 {
     let size = v.abs().max_element();
-    if size == 0.0 { DVec3::ZERO } else { (v / size).normalize() }
+    if size == 0.0 {
+        return DVec3::ZERO;
+    }
+    // divided, not multiplied by the inverse: what is along an axis stays so to the bit
+    let v = v / size;
+    v / v.length()
 }
 
 impl Frame {
@@ -70,13 +78,18 @@ impl Frame {
         let once = direction(side - along * along.dot(side));
         let twice = direction(once - along * along.dot(once));
         let across = if twice == DVec3::ZERO { along.any_orthonormal_vector() } else { twice };
+        // in a plane of two axes the product of two sides is exact, that of two unit vectors is not
+        let normal = direction((b - a).cross(side));
+        let is_thin = along.cross(side).length() < STOUT * along.dot(b - a);
+        let (across, normal) =
+            if is_thin { (across, along.cross(across)) } else { (normal.cross(along), normal) };
         let length = along.dot(b - a);
         let apex = [along.dot(side), across.dot(side)];
         let inverse = [apex[0], apex[0] - length].map(|x| {
             let inverse = 1.0 / (x * x + apex[1] * apex[1]);
             if inverse.is_finite() { inverse } else { 0.0 }
         });
-        Self { origin: a, along, across, normal: along.cross(across), length, apex, inverse }
+        Self { origin: a, along, across, normal, length, apex, inverse }
     }
 
     /// The triangle's area (m²).
@@ -127,7 +140,7 @@ impl Frame {
         let [cx, cy] = self.apex;
         let (bx, px) = (cx - self.length, p.x - self.length);
         let height = p.z * p.z;
-        let inside = p.y >= 0.0 && p.x * cy - p.y * cx >= 0.0 && bx * p.y - cy * px >= 0.0;
+        let inside = p.y > 0.0 && p.x * cy - p.y * cx > 0.0 && bx * p.y - cy * px > 0.0;
         if inside {
             return Foot { feature: FACE, offset: DVec3::new(0.0, 0.0, p.z), squared: height };
         }
@@ -245,9 +258,8 @@ impl Group {
         let to_ab = squared(x - ab, y);
         let to_bc = squared(px - bc * bx, y - bc * cy);
         let to_ca = squared(x - ca * cx, y - ca * cy);
-        let inside = y.simd_ge(zero)
-            & (x * cy - y * cx).simd_ge(zero)
-            & (bx * y - cy * px).simd_ge(zero);
+        let inside =
+            y.simd_gt(zero) & (x * cy - y * cx).simd_gt(zero) & (bx * y - cy * px).simd_gt(zero);
         let plane = inside.select(zero, to_ab.min(to_bc).min(to_ca));
         (plane + z * z).into()
     }

@@ -166,15 +166,18 @@ fn points_on_the_surface_have_its_normal() {
     let mesh = primitive("box");
     let distance = SignedDistance::new(&mesh).unwrap();
     for &corner in &mesh.vertices {
-        let found = distance.query(corner, NO_HINT, 0.0).unwrap();
+        let found = distance.query(corner, NO_HINT, 1e-15).unwrap();
         assert!(found.distance.abs() < 1e-16, "{found:?}");
         assert!(found.gradient.dot(corner.signum()) > 1.7, "{corner}: {found:?}");
     }
     // middles of edges and faces
     let on = [DVec3::new(0.15, 0.1, 0.0), DVec3::new(0.15, 0.02, 0.01)];
     for (p, normal) in on.into_iter().zip([DVec3::new(1.0, 1.0, 0.0).normalize(), DVec3::X]) {
-        let found = distance.query(p, NO_HINT, 0.0).unwrap();
-        assert!(found.distance.abs() < 1e-16 && found.distance.is_sign_positive(), "{found:?}");
+        let found = distance.query(p, NO_HINT, 1e-15).unwrap();
+        assert!(found.distance.abs() < 1e-16, "{found:?}");
         assert!(found.gradient.distance(normal) < 1e-12, "{p}: {found:?}");
     }
+    // in a plane of two axes distance and normal are exact
+    let found = distance.query(DVec3::new(0.15, 0.02, 0.01), NO_HINT, 0.0).unwrap();
+    assert_eq!((found.distance.to_bits(), found.gradient), (0, DVec3::X));
 }
