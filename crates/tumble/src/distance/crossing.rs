@@ -47,12 +47,12 @@ fn depth_under(tree: &Tree, slot: usize, size: f64) -> Option<f64> {
     let mut nearest = f64::INFINITY;
     let ray = Ray { from, along: to - from, part: [TOUCHING, 1.0] };
     tree.along_ray(&ray, |other, frame| {
-        if other != slot && frame.normal.dot(own.normal) < 0.0 {
-            if let Some(part) = crossing(frame, from, to) {
-                if part * reach > TOUCHING * size {
-                    nearest = nearest.min(part);
-                }
-            }
+        if other != slot
+            && frame.normal.dot(own.normal) < 0.0
+            && let Some(part) = crossing(frame, from, to)
+            && part * reach > TOUCHING * size
+        {
+            nearest = nearest.min(part);
         }
         nearest
     });

@@ -27,6 +27,8 @@ use triangle::{FACE, Foot};
 const UNUSED: u32 = u32::MAX;
 /// Coordinates carry an error of this many roundings; a distance as small has no direction.
 const ROUNDINGS: f64 = 8.0;
+/// Points with larger coordinates (m) would lose their squares to the range of doubles.
+const FARTHEST: f64 = 1e140;
 
 /// The closest point of a surface, told from the point that asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +128,7 @@ impl SignedDistance {
     }
 
     /// The signed distance of a point (m), its gradient and the closest triangle; `None` where the point is farther
-    /// outside than `within` (m), or not finite. Points inside are found at any depth.
+    /// outside than `within` (m), not finite, or farther from the origin than 1e140 m. Points inside are found at any depth.
     ///
     /// `hint` is a triangle that may be close, as from the last query of a nearby point: it makes the search faster and
     /// changes nothing else. Any number will do.
@@ -142,7 +144,8 @@ impl SignedDistance {
     /// How far from a point the surface matters (m); `None` where the point surely is farther outside than `within` (m).
     #[inline]
     fn search_radius(&self, point: DVec3, within: f64) -> Option<f64> {
-        if !point.is_finite() {
+        // NaN is not below it
+        if !point.abs().cmple(DVec3::splat(FARTHEST)).all() {
             return None;
         }
         let mut at_least = self.bounds.distance(point);
@@ -189,9 +192,9 @@ impl SignedDistance {
 
     /// Whether a ball is sure to be outside the solid: no point of it inside or on the surface.
     ///
-    /// `false` is no certainty of the contrary only within rounding.
+    /// But for rounding, `false` means that some point is. A ball that is not finite is never sure to be outside.
     pub fn outside_ball(&self, centre: DVec3, radius: f64) -> bool {
-        centre.is_finite() && self.query(centre, UNUSED, radius).is_none()
+        centre.is_finite() && radius.is_finite() && self.query(centre, UNUSED, radius).is_none()
     }
 
     /// Whether the segment between two points outside the solid crosses its surface. Where it only touches an edge or a

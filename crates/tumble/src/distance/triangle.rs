@@ -146,8 +146,8 @@ impl Frame {
         }
         // the foot on each side: how far along, and from it to the point
         let ab = p.x.max(0.0).min(self.length);
-        let ca = ((p.x * cx + p.y * cy) * self.inverse[0]).max(0.0).min(1.0);
-        let bc = ((px * bx + p.y * cy) * self.inverse[1]).max(0.0).min(1.0);
+        let ca = ((p.x * cx + p.y * cy) * self.inverse[0]).clamp(0.0, 1.0);
+        let bc = ((px * bx + p.y * cy) * self.inverse[1]).clamp(0.0, 1.0);
         let sides = [
             (p.x - ab, p.y, ab / self.length, 0),
             (px - bc * bx, p.y - bc * cy, bc, 1),

@@ -145,9 +145,8 @@ fn sphere_and_torus_agree_within_the_sagitta() {
         let across = DVec3::new(p.x, 0.0, p.z).length() - radius;
         libm::sqrt(across * across + p.y * p.y) - tube
     };
-    let shapes: [(&Mesh, &dyn Fn(DVec3) -> f64, f64); 2] =
-        [(&sphere, &to_sphere, radius), (&torus, &to_torus, tube)];
-    for (mesh, exact, curvature) in shapes {
+    for (mesh, is_torus, curvature) in [(&sphere, false, radius), (&torus, true, tube)] {
+        let exact = |p| if is_torus { to_torus(p) } else { to_sphere(p) };
         let distance = SignedDistance::new(mesh).unwrap();
         let edge = mesh.triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
         let longest = edge
