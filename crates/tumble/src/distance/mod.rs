@@ -192,9 +192,9 @@ impl SignedDistance {
 
     /// Whether a ball is sure to be outside the solid: no point of it inside or on the surface.
     ///
-    /// But for rounding, `false` means that some point is. A ball that is not finite is never sure to be outside.
+    /// But for rounding, `false` means that some point is. A ball that is not finite, or larger than 1e140 m, is never sure to be.
     pub fn outside_ball(&self, centre: DVec3, radius: f64) -> bool {
-        centre.is_finite() && radius.is_finite() && self.query(centre, UNUSED, radius).is_none()
+        centre.is_finite() && radius <= FARTHEST && self.query(centre, UNUSED, radius).is_none()
     }
 
     /// Whether the segment between two points outside the solid crosses its surface. Where it only touches an edge or a
