@@ -29,8 +29,9 @@ FRICTION = 0.5
 # the lattice at the start: n^3 clumps at rest, turned at random; the box is as wide as the lattice
 PITCH = 0.28  # m; a clump and its corners fit into a ball of 0.2732 m
 FIRST = 0.18  # m, height of the lowest layer
-LAST = 0.5  # s at the end of a run that are timed on their own: the heap is dense
-FRAME = 0.01  # s between the states that are looked at
+FRAME = 0.02  # s between two values of the energy
+LOOK = 5  # frames from one look at the heap to the next
+LAST = 0.5  # s at the end of a run that are timed on their own: the heap is dense and hardly moves
 
 # at rest: from the first frame on after which the kinetic energy never again exceeds this part of the
 # energy that lifts every clump by its own edge of 4 R
@@ -58,11 +59,6 @@ def spheres(position, q):
     return position[:, None, :] + np.einsum("nij,kj->nki", rotations(q), CORNERS)
 
 
-def kinetic(velocity, spin, inertia=INERTIA):
-    """Kinetic energy of all clumps (J)."""
-    return 0.5 * MASS * (velocity**2).sum() + 0.5 * inertia * (spin**2).sum()
-
-
 def look(centres):
     """The heap as it is: mean height of the clumps, contacts and overlaps.
 
@@ -88,33 +84,27 @@ def look(centres):
     }
 
 
-def time_to_rest(times, energies, clumps):
-    """When it came to rest (s), or None."""
-    moving = np.flatnonzero(np.asarray(energies) > AT_REST * clumps * MASS * GRAVITY * 4.0 * R)
-    if len(moving) == 0:
-        return times[0]
-    return times[moving[-1] + 1] if moving[-1] + 1 < len(times) else None
+def time_to_rest(energies, clumps):
+    """When it came to rest (s), or None; `energies` (J) are those of the frames, the first at the start."""
+    limit = AT_REST * clumps * MASS * GRAVITY * 4.0 * R
+    # at the start nothing moves yet
+    moving = [frame for frame, energy in enumerate(energies) if energy > limit]
+    after = moving[-1] + 1 if moving else 0
+    return after * FRAME if after < len(energies) else None
 
 
-def result(engine, times, energies, wall, cpu, centres):
-    """One row: `wall` and `cpu` are the seconds of each frame's steps, `centres` the state at the end.
-
-    `cpu` may be None.
-    """
-    clumps, frames = len(centres), len(wall)
-    last = max(1, round(LAST / FRAME))
-    steps = round(FRAME / DT)
-    return {
-        "engine": engine,
-        "clumps": clumps,
-        "simulated (s)": times[-1],
-        "wall (s)": sum(wall),
-        "processor (s)": cpu and sum(cpu),
-        "body-steps/s, whole": clumps * steps * frames / sum(wall),
-        "body-steps/s, last": clumps * steps * last / sum(wall[-last:]),
-        "body-steps/cpu s, whole": cpu and clumps * steps * frames / sum(cpu),
-        "body-steps/cpu s, last": cpu and clumps * steps * last / sum(cpu[-last:]),
-        "time to rest (s)": time_to_rest(times, energies, clumps),
-        "kinetic a clump (J)": [e / clumps for e in energies],
-        **look(centres),
-    }
+def result(engine, clumps, energies, seconds, looks):
+    """What is known of one run. `seconds` are those of the whole run and of its last part, for each clock;
+    the last of `looks` is the state at the end."""
+    duration = (len(energies) - 1) * FRAME
+    found = {"engine": engine, "clumps": clumps, "simulated (s)": duration}
+    for clock, (whole, last) in seconds.items():
+        found[f"{clock} seconds"] = whole
+        found[f"body-steps a {clock} second"] = clumps * duration / DT / whole
+        found[f"body-steps a {clock} second, last"] = clumps * LAST / DT / last
+    deepest = max(max(at["deepest overlap (m)"], at["deepest at a wall (m)"]) for at in looks)
+    found |= looks[-1] | {"deepest of all looks (m)": deepest}
+    found["time to rest (s)"] = time_to_rest(energies, clumps)
+    found["kinetic a clump at the end (J)"] = energies[-1] / clumps
+    found["kinetic a clump (J)"] = [energy / clumps for energy in energies]
+    return found
