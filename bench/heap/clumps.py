@@ -25,7 +25,7 @@ Atoms # hybrid
 
 # a dashpot in LAMMPS is the mass in motion times a rate; here all clumps are alike, so it is a number
 TUMBLE_HEAD = """description = "A heap of {clumps} clumps of eight spheres"
-duration = {duration!r}
+duration = 3.0
 dt = {dt!r}
 gravity = [0.0, 0.0, {gravity!r}]
 
@@ -53,15 +53,12 @@ TUMBLE_BODY = """
 [[body]]
 name = "clump {number}"
 particles = {particles}
-{keys}mass = {mass!r}
-position = {position}
-orientation = {orientation}
-"""
-
-# what makes the particles balls that meet each other
-MEETING = """surface = "spheres"
+surface = "spheres"
 particle_radius = {radius!r}
 mass_model = "solid"
+mass = {mass!r}
+position = {position}
+orientation = {orientation}
 """
 
 
@@ -109,13 +106,12 @@ def write_lammps(path, position, q):
             file.write(f"{place} {2.0 * heap.R!r} 1000.0 {number // 8 + 1}\n")
 
 
-def write_tumble(path, position, q, duration=3.0, meeting=True):
-    """`heap.toml`. Without `meeting` the clumps are points that only walls stop."""
+def write_tumble(path, position, q):
+    """`heap.toml`; with_tumble.py says how long it runs."""
     clumps = len(position)
     with path.open("w") as file:
         file.write(TUMBLE_HEAD.format(
             clumps=clumps,
-            duration=duration,
             dt=heap.DT,
             gravity=-heap.GRAVITY,
             k=heap.K,
@@ -129,10 +125,9 @@ def write_tumble(path, position, q, duration=3.0, meeting=True):
             height=height(clumps),
             interval=heap.FRAME,
         ))
-        keys = MEETING.format(radius=heap.R) if meeting else ""
         for number, (p, o) in enumerate(zip(position.tolist(), q.tolist())):
             file.write(TUMBLE_BODY.format(
-                number=number, particles=heap.CORNERS.tolist(), keys=keys, mass=heap.MASS, position=p, orientation=o
+                number=number, particles=heap.CORNERS.tolist(), radius=heap.R, mass=heap.MASS, position=p, orientation=o
             ))
 
 

@@ -29,8 +29,8 @@ def call(*words):
     return done.stdout
 
 
-def states(path, clumps):
-    """Position and orientation of all clumps, one frame after the other."""
+def frames(path, clumps):
+    """The rows of all clumps, one frame after the other; the whole file may be too large for memory."""
     rows = csv.reader(path.open())
     next(rows)
     while frame := list(itertools.islice(rows, clumps)):
@@ -40,11 +40,11 @@ def states(path, clumps):
 def looks(path, clumps):
     """The looks at the heap, and the sphere centres at the start."""
     found, first, frame = [], None, None
-    for number, frame in enumerate(states(path, clumps)):
-        if number == 0 or number % heap.LOOK == 0:
-            found.append(heap.look(centres(frame)))
+    for number, frame in enumerate(frames(path, clumps)):
         if number == 0:
             first = centres(frame)
+        if number % heap.LOOK == 0:
+            found.append(heap.look(centres(frame)))
     if number % heap.LOOK != 0:
         found.append(heap.look(centres(frame)))
     return found, first
