@@ -7,8 +7,8 @@ use glam::{DMat3, DQuat, DVec3};
 use crate::surface::Solids;
 use crate::{
     BodyModel, BodyState, BuildError, BuildErrors, ContactLaw, Damping, DragModes, Integrator,
-    Material, MaterialOverride, Model, Motion, PairMaterial, Shape, State, Surface, WallBox,
-    WallPlane, World, critical_dt,
+    Material, MaterialOverride, Model, Motion, Overlaps, PairMaterial, Shape, State, Surface,
+    WallBox, WallPlane, World, critical_dt,
 };
 
 /// A body as a user describes it.
@@ -120,6 +120,7 @@ pub struct WorldBuilder {
     energy_tolerance: Option<f64>,
     force: bool,
     material: Material,
+    overlaps: Overlaps,
     walls: Vec<(WallPlane, MaterialOverride)>,
     bodies: Vec<Body>,
 }
@@ -135,6 +136,7 @@ impl Default for WorldBuilder {
             energy_tolerance: None,
             force: false,
             material: Material::default(),
+            overlaps: Overlaps::default(),
             walls: Vec::new(),
             bodies: Vec::new(),
         }
@@ -182,6 +184,12 @@ impl WorldBuilder {
     /// The material of contacts for which neither wall nor body has its own.
     pub fn material(mut self, material: Material) -> Self {
         self.material = material;
+        self
+    }
+
+    /// What is done about bodies that start in each other; they are refused unless said.
+    pub fn overlaps(mut self, overlaps: Overlaps) -> Self {
+        self.overlaps = overlaps;
         self
     }
 
@@ -239,6 +247,9 @@ impl WorldBuilder {
             }
         }
         errors.extend(same_names(&model));
+        if errors.is_empty() && model.meets && self.overlaps == Overlaps::Push {
+            crate::stage::push_apart(&model, &mut state);
+        }
         errors.extend(overlaps(&model, &state));
         errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && !self.force).map(
             |critical| BuildError::Unstable {

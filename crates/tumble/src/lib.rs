@@ -77,6 +77,6 @@ pub use shape::{
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::Pull;
 pub use state::{BodyState, ContactKind, FrictionSpring, PairSpring, State, Tally};
-pub use surface::Surface;
+pub use surface::{Overlaps, Surface};
 pub use wall::{WallBox, WallPlane};
 pub use world::{BodyView, World};

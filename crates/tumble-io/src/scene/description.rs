@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use tumble::{
-    DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Prescribed, Sampling,
-    Surface, WallBox, WallPlane,
+    DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Overlaps, Prescribed,
+    Sampling, Surface, WallBox, WallPlane,
 };
 
 use super::geometry::ShapeScene;
@@ -30,6 +30,8 @@ pub struct Scene {
     pub energy_tolerance: Option<f64>,
     /// The material of contacts that neither wall nor body says otherwise about.
     pub collision: Material,
+    /// What is done about bodies that start in each other.
+    pub overlaps: Overlaps,
     /// The box, if there is one.
     pub walls_of_box: Option<BoxScene>,
     /// The single walls.

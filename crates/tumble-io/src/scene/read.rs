@@ -2,7 +2,9 @@
 
 use std::cell::RefCell;
 
-use tumble::{DQuat, DVec3, Damping, Integrator, Material, MaterialOverride, WallBox, WallPlane};
+use tumble::{
+    DQuat, DVec3, Damping, Integrator, Material, MaterialOverride, Overlaps, WallBox, WallPlane,
+};
 
 use super::body::{self, MOST_COPIES};
 use super::description::{BodyScene, BoxScene, Copies, OutputScene, Scene, WallScene};
@@ -50,6 +52,10 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
             .unwrap_or(0.0),
         collision,
         energy_tolerance: top.number("energy_tolerance", Range::BelowOne),
+        overlaps: match top.choice("overlaps", &["refuse", "push"]) {
+            Some("push") => Overlaps::Push,
+            _ => Overlaps::Refuse,
+        },
         walls_of_box,
         walls,
         bodies,

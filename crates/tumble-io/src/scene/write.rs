@@ -2,8 +2,8 @@
 
 use toml::{Table, Value};
 use tumble::{
-    DQuat, DVec3, Damping, MaterialOverride, Oscillation, Primitive, Sampling, Surface, WallBox,
-    WallPlane,
+    DQuat, DVec3, Damping, MaterialOverride, Oscillation, Overlaps, Primitive, Sampling, Surface,
+    WallBox, WallPlane,
 };
 
 use super::description::{BodyScene, Geometry, MassScene, MotionScene, Scene};
@@ -27,6 +27,9 @@ impl Scene {
         put(&mut top, "velocity_damping_stiffness", self.velocity_damping_stiffness);
         if let Some(tolerance) = self.energy_tolerance {
             put(&mut top, "energy_tolerance", tolerance);
+        }
+        if self.overlaps == Overlaps::Push {
+            put(&mut top, "overlaps", "push");
         }
         let mut collision = Table::new();
         put_material(&mut collision, &self.collision.into());

@@ -69,6 +69,12 @@ impl<'a> Placed<'a> {
         0.5 * stiffness * self.stretch(model, spring).length_squared()
     }
 
+    /// Depth of the deepest particle behind a wall (m); 0 where none is behind it.
+    pub fn depth_behind(&self, wall: &WallPlane) -> f64 {
+        let particles = self.body.shape.particles();
+        NearWall::of(wall, self).map_or(0.0, |near| particles.largest(self.level, &near.depth))
+    }
+
     /// From the anchor of a friction spring to its particle, along the wall (m).
     pub(super) fn stretch(&self, model: &Model, spring: &FrictionSpring) -> DVec3 {
         let arm = self.rotation * self.body.shape.particles().get(spring.particle as usize);
