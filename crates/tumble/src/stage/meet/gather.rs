@@ -70,13 +70,16 @@ impl Meeting {
 
     /// Adds the latest sums to the forces of the bodies.
     pub(super) fn give(&self, forces: &mut [BodyForces]) {
-        for (sum, forces) in self.sums.iter().zip(forces) {
-            forces.spring += sum.all - sum.dashpot;
-            forces.dashpot += sum.dashpot;
-            forces.slip += sum.slip;
-            (forces.belt_power, forces.belt_loss) = (sum.belt_power, sum.belt_loss);
-            forces.max_depth = forces.max_depth.max(sum.max_depth);
-        }
+        let sums = &self.sums;
+        parallel::each_body(forces, |first, forces| {
+            for (sum, forces) in sums[first..].iter().zip(forces) {
+                forces.spring += sum.all - sum.dashpot;
+                forces.dashpot += sum.dashpot;
+                forces.slip += sum.slip;
+                (forces.belt_power, forces.belt_loss) = (sum.belt_power, sum.belt_loss);
+                forces.max_depth = forces.max_depth.max(sum.max_depth);
+            }
+        });
     }
 }
 
