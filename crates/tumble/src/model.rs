@@ -91,7 +91,12 @@ pub struct BodyModel {
 
 impl BodyModel {
     /// Line 7: ω = R I₀⁻¹ Rᵀ L, with `rotation` = R (rad/s, world axes).
+    #[inline]
     pub fn angular_velocity(&self, rotation: DMat3, angular_momentum: DVec3) -> DVec3 {
+        let inverse = self.inverse_moments;
+        if inverse.x == inverse.y && inverse.y == inverse.z {
+            return angular_momentum * inverse.x;
+        }
         rotation * (self.inverse_inertia * (rotation.transpose() * angular_momentum))
     }
 

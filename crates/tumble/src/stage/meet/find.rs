@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::contact::{Contact, PairForces};
+use super::contact::{Contact, Mount, PairForces, Touch};
 use super::list::{self, Near, Pair, Point};
 use super::pose::Pose;
 use crate::parallel::CHUNK;
@@ -96,16 +96,29 @@ impl Found {
                 }
                 if travel >= point.quiet {
                     match sides.touch(pair, point) {
-                        Ok(mut contact) => {
+                        Ok(touch) => {
                             point.quiet = 0.0;
-                            if pair.law.friction > 0.0 {
-                                // a new one is held where it is found
-                                if let Some(stretch) = springs.take(pair, &contact) {
-                                    contact.before = stretch;
-                                    contact.carry(pair.kind, sides.first, sides.second, h);
-                                }
+                            self.contacts.push(Contact {
+                                touch,
+                                before: DVec3::ZERO,
+                                stretch: DVec3::ZERO,
+                                held: 0.0,
+                                particle: point.particle,
+                                other: if pair.kind == ContactKind::Spheres {
+                                    point.other
+                                } else {
+                                    0
+                                },
+                            });
+                            // a new spring is held where it is found
+                            if pair.law.friction > 0.0
+                                && let Some(contact) = self.contacts.last_mut()
+                                && let Some(stretch) = springs.take(pair, contact)
+                            {
+                                contact.before = stretch;
+                                let mount = sides.mount(pair, touch.depth);
+                                contact.carry(&mount, sides.first, sides.second, h);
                             }
-                            self.contacts.push(contact);
                         }
                         Err(gap) => point.quiet = travel + gap,
                     }
@@ -145,7 +158,7 @@ impl Found {
             let law = &near.pairs[touching.pair as usize].law;
             let contacts = &self.contacts[touching.start as usize..touching.end as usize];
             let stored = |contact: &Contact| {
-                law.stiffness * contact.depth * contact.depth
+                law.stiffness * contact.touch.depth * contact.touch.depth
                     + law.friction_spring * contact.stretch.length_squared()
             };
             0.5 * contacts.iter().map(stored).sum::<f64>()
@@ -188,7 +201,7 @@ fn spring(model: &Model, pair: &Pair, contact: &Contact) -> PairSpring {
         ContactKind::SecondInFirst => (index(second, contact.particle), 0),
         ContactKind::Wall | ContactKind::FirstInSecond => (index(first, contact.particle), 0),
     };
-    PairSpring { first, second, kind, particle, other, stretch: contact.held }
+    PairSpring { first, second, kind, particle, other, stretch: contact.stretch * contact.held }
 }
 
 /// What stands for a wall as second body.
@@ -232,7 +245,7 @@ impl<'a> Sides<'a> {
 
     /// The contact of a listed point, or how far it is from one (m).
     #[inline(always)]
-    fn touch(&self, pair: &Pair, point: &mut Point) -> Result<Contact, f64> {
+    fn touch(&self, pair: &Pair, point: &mut Point) -> Result<Touch, f64> {
         let (model, p, q) = (self.model, self.first, self.second);
         let a = &model.bodies[pair.first as usize];
         let (at, normal, depth) = match pair.kind {
@@ -273,28 +286,18 @@ impl<'a> Sides<'a> {
         if depth <= 0.0 {
             return Err(-depth);
         }
-        let zero = DVec3::ZERO;
+        Ok(Touch { normal, depth, arm: at - p.position, other_arm: at - q.position })
+    }
+
+    /// How the point of a contact is fixed to the bodies.
+    fn mount(&self, pair: &Pair, depth: f64) -> Mount {
+        let radius = |body: u32| list::radius(&self.model.bodies[body as usize]) - 0.5 * depth;
         let (offset, other_offset) = match pair.kind {
             ContactKind::Wall | ContactKind::FirstInSecond => (pair.reach, 0.0),
             ContactKind::SecondInFirst => (0.0, pair.reach),
-            ContactKind::Spheres => {
-                let b = &model.bodies[pair.second as usize];
-                (list::radius(a) - 0.5 * depth, list::radius(b) - 0.5 * depth)
-            }
+            ContactKind::Spheres => (radius(pair.first), radius(pair.second)),
         };
-        Ok(Contact {
-            normal,
-            depth,
-            arm: at - p.position,
-            offset,
-            other_offset,
-            other_arm: at - q.position,
-            before: zero,
-            stretch: zero,
-            held: zero,
-            particle: point.particle,
-            other: if pair.kind == ContactKind::Spheres { point.other } else { 0 },
-        })
+        Mount { kind: pair.kind, offset, other_offset }
     }
 }
 

@@ -46,11 +46,11 @@ pub fn meet(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     let is_damped = |body: &BodyModel| body.pair_material.is_damped();
     if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
         meeting.push::<true>();
-        meeting.gather();
+        meeting.gather::<true>();
         meeting.half_kick(model, &scratch.forces, h);
     }
     meeting.push::<false>();
-    meeting.gather();
+    meeting.gather::<false>();
     meeting.give(&mut scratch.forces);
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<Overlap> {
     meeting.find(model, &[], 0.0);
     let mut overlaps = Vec::new();
     meeting.each_touching(|pair, contacts| {
-        let depth = contacts.iter().fold(0.0f64, |depth, contact| depth.max(contact.depth));
+        let depth = contacts.iter().fold(0.0f64, |depth, contact| depth.max(contact.touch.depth));
         if pair.kind != ContactKind::Wall && depth > DEEP * grain(model, pair) {
             overlaps.push((pair.first, pair.second, depth));
         }
@@ -57,11 +57,11 @@ pub(crate) fn push_apart(model: &Model, state: &mut State) -> bool {
             let weight = |body: usize| model.bodies[body].pair_material.inverse_mass;
             let of_second = if pair.kind == ContactKind::Wall { 0.0 } else { weight(b) };
             let sum = weight(a) + of_second;
-            for contact in contacts {
-                is_free &= contact.depth <= APART * grain(model, pair);
-                give_way(&mut ways[a], contact.normal * (contact.depth * weight(a) / sum));
+            for Contact { touch, .. } in contacts {
+                is_free &= touch.depth <= APART * grain(model, pair);
+                give_way(&mut ways[a], touch.normal * (touch.depth * weight(a) / sum));
                 if of_second > 0.0 {
-                    give_way(&mut ways[b], contact.normal * (-contact.depth * of_second / sum));
+                    give_way(&mut ways[b], touch.normal * (-touch.depth * of_second / sum));
                 }
             }
         });
