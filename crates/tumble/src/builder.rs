@@ -1,8 +1,12 @@
 //! From a description to a world: every value is checked here, once.
 
+mod twins;
+
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
+
+use self::twins::Twins;
 
 use crate::{
     BodyModel, BodyState, BuildError, BuildErrors, ContactLaw, Damping, DragModes, Integrator,
@@ -223,10 +227,10 @@ impl WorldBuilder {
             gap: smallest_gap(&self.walls),
             bodies: Vec::with_capacity(self.bodies.len()),
         };
-        let mut state = State::default();
+        let (mut state, mut twins) = (State::default(), Twins::default());
         for (index, body) in self.bodies.iter().enumerate() {
             let name = body.name.clone().unwrap_or_else(|| format!("body {index}"));
-            match self.start(&model, name, body) {
+            match self.start(&model, name, body, &mut twins) {
                 Ok((body_model, body_state)) => {
                     model.bodies.push(body_model);
                     state.bodies.push(body_state);
@@ -279,14 +283,29 @@ impl WorldBuilder {
         model: &Model,
         name: String,
         body: &Body,
+        twins: &mut Twins,
     ) -> Result<(BodyModel, BodyState), BuildError> {
-        let body_model = self.body_model(name, body)?;
+        let body_model = self.body_model(name, body, twins)?;
         let body_state = body_state(&body_model, body)?;
         check_inside(model, &body_model, &body_state)?;
         Ok((body_model, body_state))
     }
 
-    fn body_model(&self, name: String, body: &Body) -> Result<BodyModel, BuildError> {
+    /// The materials of all that a body may touch, walls first.
+    fn materials(&self, body: &Body) -> (Vec<Material>, Option<Material>) {
+        let wall = |(_, wall): &(_, MaterialOverride)| self.material.between(*wall, body.material);
+        // what other bodies bring along is not known yet
+        let meets = body.surface != Surface::None;
+        let own = meets.then(|| body.material.over(self.material));
+        (self.walls.iter().map(wall).collect(), own)
+    }
+
+    fn body_model(
+        &self,
+        name: String,
+        body: &Body,
+        twins: &mut Twins,
+    ) -> Result<BodyModel, BuildError> {
         let (quantity, value, mass) = match body.mass {
             Mass::Total(mass) => ("mass", mass, mass),
             Mass::Particle(mass) => {
@@ -306,15 +325,25 @@ impl WorldBuilder {
             });
         }
         let particle_mass = mass / body.shape.moments().count;
-        let contact = |(_, wall): &(_, MaterialOverride)| {
-            self.material.between(*wall, body.material).law(particle_mass)
+        let (walls, own) = self.materials(body);
+        let per_area = |material: &Material| material.collision_stiffness_per_area;
+        let shape = match walls.iter().chain(&own).find_map(per_area) {
+            Some(stiffness) => twins.of(&body.shape).map_err(|error| BuildError::Body {
+                body: name.clone(),
+                quantity: "collision_stiffness_per_area",
+                value: stiffness.to_string(),
+                allowed: error.allowed(),
+            })?,
+            None => Arc::clone(&body.shape),
         };
-        let contacts: Vec<_> = self.walls.iter().map(contact).collect();
+        let area = shape.mean_area().unwrap_or_default();
+        let law = |material: Material| material.at_area(area).law(particle_mass);
+        let contacts: Vec<_> = walls.into_iter().map(law).collect();
         let moments = body.shape.principal().moments * mass;
         let inverse_moments = moments.to_array().map(|m| if m > 0.0 { 1.0 / m } else { 0.0 });
         Ok(BodyModel {
             name,
-            shape: Arc::clone(&body.shape),
+            shape,
             mass,
             inertia,
             inverse_inertia,
@@ -344,6 +373,9 @@ fn check_material(
         check(name, value >= 0.0 && value.is_finite(), &value, allowed);
     };
     number("collision_stiffness", material.collision_stiffness, "a number of N/m, 0 or more");
+    if let Some(stiffness) = material.collision_stiffness_per_area {
+        number("collision_stiffness_per_area", stiffness, "a number of N/m³, 0 or more");
+    }
     number("friction_stiffness", material.friction_stiffness, "a number, 0 or more");
     if let Some(spring) = material.friction_spring {
         number("friction_spring", spring, "a number of N/m, 0 or more");

@@ -65,9 +65,9 @@ pub use motion::{Motion, Oscillation, Prescribed};
 pub use restore::StateError;
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{
-    Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties, Mesh, MeshError,
-    OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError, PrincipalAxes, SampleError,
-    Sampling, Shape, ShapeError, ShellError,
+    AreaError, Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties, Mesh,
+    MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError, PrincipalAxes,
+    SampleError, Sampling, Shape, ShapeError, ShellError,
 };
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::Pull;

@@ -1,5 +1,6 @@
 //! What a body is made of: its mesh, its particles, its mass properties.
 
+mod areas;
 mod body_shape;
 mod closedness;
 mod descend;
@@ -11,6 +12,7 @@ mod primitive;
 mod sampling;
 mod tree;
 
+pub use areas::AreaError;
 pub use body_shape::{MassModel, ParticleMoments, Shape, ShapeError};
 pub use closedness::{Closedness, EdgeFault, FaultyEdge};
 pub(crate) use descend::RampSums;
