@@ -36,13 +36,14 @@ fn judge(loaded: Result<Loaded, SceneError>) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-const WORDS: [&str; 62] = [
+const WORDS: [&str; 63] = [
     "duration",
     "dt",
     "gravity",
     "integrator",
     "[collision]",
     "collision_stiffness",
+    "collision_stiffness_per_area",
     "[box]",
     "min",
     "max",
@@ -108,7 +109,7 @@ fn words() -> impl Strategy<Value = String> {
 
 /// Lines `key = value` that are TOML most of the time.
 fn lines() -> impl Strategy<Value = String> {
-    vec((select(&WORDS[..36]), select(&WORDS[36..])), 0..12).prop_map(|lines| {
+    vec((select(&WORDS[..37]), select(&WORDS[37..])), 0..12).prop_map(|lines| {
         let line = |(key, value): (&str, &str)| match key.starts_with('[') {
             true => format!("{key}\n"),
             false => format!("{key} = {value}\n"),
