@@ -147,34 +147,46 @@ fn spheres(checks: &mut Vec<Check>) -> Result<(), Error> {
     for (name, mesh, turn) in meshes()? {
         let elastic = bounce(solid(&mesh)?, turn, RADIUS, per_area(), down)?;
         let name = format!("sphere, {name}");
-        checks.push(Check::new(format!("depth, {name}"), depth, elastic.depth, 0.02 * depth, "m"));
-        checks.push(Check::new(format!("time, {name}"), time, elastic.time, 0.03 * time, "s"));
+        checks.push(Check::new(format!("depth, {name}"), depth, elastic.depth, 0.005 * depth, "m"));
+        checks.push(Check::new(format!("time, {name}"), time, elastic.time, 0.005 * time, "s"));
         let damped = bounce(solid(&mesh)?, turn, RADIUS, damped, down)?;
-        checks.push(Check::new(format!("rebound, {name}"), back, damped.speed, 0.03 * back, "m/s"));
+        checks.push(Check::new(
+            format!("rebound, {name}"),
+            back,
+            damped.speed,
+            0.005 * back,
+            "m/s",
+        ));
     }
     Ok(())
 }
 
-/// How fast the smooth sphere comes back: its depth δ and speed by small steps, with the springs and dashpots of its
-/// surface summed in closed form, ∫ max(0, κ (δ − h) + c δ') 2 π R dh.
+/// How fast the smooth sphere comes back, with the springs and dashpots of its surface summed in closed form,
+/// ∫ max(0, κ (δ − h) + c δ') 2 π R dh.
 fn smooth_rebound(material: Material) -> f64 {
     let law = material.at_area(4.0 * PI * RADIUS * RADIUS).law(MASS);
-    // of the whole surface, so per area once divided by it: time constant of the contact
     let lag = law.damping / law.stiffness;
     let force = |depth: f64, rate: f64| {
         let reach = (depth + lag * rate).max(0.0);
-        // springs and dashpots over all heights where neither the particle nor the sum is above the floor
         let most = reach.min(depth);
         2.0 * PI * RADIUS * KAPPA * most * (reach - 0.5 * most)
     };
-    let (mut depth, mut rate, h) = (0.0, SPEED, 1e-6);
+    smooth_bounce(force).2
+}
+
+/// Depth (m), time (s) and speed back (m/s) of a body that is pushed by `force` (N) of its depth and its rate, in
+/// small steps.
+fn smooth_bounce(force: impl Fn(f64, f64) -> f64) -> (f64, f64, f64) {
+    let (mut depth, mut rate, mut time, mut deepest, h) = (0.0, SPEED, 0.0, 0.0f64, 1e-6);
     loop {
         let (middle, half) = (depth + 0.5 * h * rate, rate - 0.5 * h * force(depth, rate) / MASS);
         let push = force(middle, half);
         depth += h * half;
         rate -= h * push / MASS;
-        if rate < 0.0 && push == 0.0 {
-            return -rate;
+        time += h;
+        deepest = deepest.max(depth);
+        if rate < 0.0 && push <= 0.0 {
+            return (deepest, time, -rate);
         }
     }
 }
@@ -194,22 +206,19 @@ fn per_particle(checks: &mut Vec<Check>) -> Result<(), Error> {
     Ok(())
 }
 
-/// A flat box on its face is one spring κ A; on its edges half of the first row of the sides counts too.
+/// A flat box sinks in with its face A and, by and by, with its sides: κ (A δ + P δ²/2), P around the face.
 fn boxes(checks: &mut Vec<Check>) -> Result<(), Error> {
     let size = DVec3::new(0.3, 0.05, 0.3);
     let (face, around) = (size.x * size.z, 2.0 * (size.x + size.z));
-    let sink = |area: f64| SPEED * (MASS / (KAPPA * area)).sqrt();
-    let swing = |area: f64| PI * (MASS / (KAPPA * area)).sqrt();
+    let force = |depth: f64, _| KAPPA * depth * (face + 0.5 * around * depth);
+    let (depth, time, _) = smooth_bounce(force);
     for divisions in [6, 12, 24] {
         let shape = solid(&Primitive::Box { size, divisions }.mesh()?)?;
-        let hit = bounce(shape, DQuat::IDENTITY, 0.5 * size.y, per_area(), DVec3::NEG_Y * SPEED)?;
+        let down = DVec3::NEG_Y * SPEED;
+        let hit = bounce(shape, DQuat::IDENTITY, 0.5 * size.y, per_area(), down)?;
         let name = format!("box flat on its face, {divisions} divisions");
-        let (depth, time) = (sink(face), swing(face));
-        checks.push(Check::new(format!("depth, {name}"), depth, hit.depth, 0.03 * depth, "m"));
-        checks.push(Check::new(format!("time, {name}"), time, hit.time, 0.03 * time, "s"));
-        let exact = sink(face + 0.5 * around * size.y / f64::from(divisions));
-        let quantity = format!("depth, {name}, with its edges' shares");
-        checks.push(Check::new(quantity, exact, hit.depth, 1e-4 * exact, "m"));
+        checks.push(Check::new(format!("depth, {name}"), depth, hit.depth, 0.01 * depth, "m"));
+        checks.push(Check::new(format!("time, {name}"), time, hit.time, 0.01 * time, "s"));
     }
     Ok(())
 }
@@ -227,10 +236,10 @@ fn oblique(checks: &mut Vec<Check>) -> Result<(), Error> {
             format!("spin of an oblique bounce, {name}"),
             expected,
             found.spin.z,
-            0.03 * expected.abs(),
+            0.01 * expected.abs(),
             "rad/s",
         ));
-        checks.push(Check::error(format!("its ledger, {name}"), found.residual, 1e-4, ""));
+        checks.push(Check::error(format!("its ledger, {name}"), found.residual, 1e-5, ""));
     }
     Ok(())
 }
@@ -252,8 +261,9 @@ fn plate() -> Result<Check, Error> {
     let shape = Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Shell)?;
     let material = Material { damping: Damping::Restitution(0.2), ..per_area() };
     let body = Body::new(shape).mass(MASS).position(DVec3::ZERO);
-    let mut world = on_floor(material).dt(1e-4).body(body).build()?;
-    run(&mut world, 2.0)?;
+    // at rest a dashpot feels the kicks of the steps, which costs some g h² of depth
+    let mut world = on_floor(material).dt(5e-6).body(body).build()?;
+    run(&mut world, 0.5)?;
     let expected = MASS * 9.8 / (KAPPA * 0.06);
     let depth = -world.body(0).position().y;
     Ok(Check::new("depth, plate of 0.06 m² at rest", expected, depth, 1e-6 * expected, "m"))
