@@ -212,6 +212,21 @@ struct Push<'a> {
     law: ContactLaw,
 }
 
+/// What the particles of eight contacts weigh; where none does, nothing is multiplied.
+struct Weights<S: Simd, const WEIGHTED: bool>(f64x8<S>);
+
+impl<S: Simd, const WEIGHTED: bool> Weights<S, WEIGHTED> {
+    #[inline(always)]
+    fn of(&self, lanes: f64x8<S>) -> f64x8<S> {
+        if WEIGHTED { lanes * self.0 } else { lanes }
+    }
+
+    #[inline(always)]
+    fn of_vector(&self, lanes: Vec3x8<S>) -> Vec3x8<S> {
+        if WEIGHTED { lanes * self.0 } else { lanes }
+    }
+}
+
 /// Sums over the contacts, eight side by side.
 struct Sums<S: Simd> {
     spring: f64x8<S>,
@@ -267,9 +282,7 @@ impl Push<'_> {
         sums: &mut Sums<S>,
     ) {
         let (place, law) = (self.place, &self.law);
-        let weights = f64x8::simd_from(simd, weights);
-        let one = |lanes: f64x8<S>| if WEIGHTED { lanes * weights } else { lanes };
-        let three = |lanes: Vec3x8<S>| if WEIGHTED { lanes * weights } else { lanes };
+        let weights = Weights::<S, WEIGHTED>(f64x8::simd_from(simd, weights));
         let n = Vec3x8::splat(simd, self.normal);
         let arm = Vec3x8::load(simd, &eight.arm);
         let depth = f64x8::simd_from(simd, eight.depth);
@@ -280,7 +293,7 @@ impl Push<'_> {
         let spring = depth * law.stiffness;
         let push = positive(simd, spring - u.dot(n) * law.damping);
         let push = depth.simd_gt(f64x8::splat(simd, 0.0)).select(push, spring);
-        let (its_spring, its_push) = (one(spring), one(push));
+        let (its_spring, its_push) = (weights.of(spring), weights.of(push));
         sums.spring += its_spring;
         sums.spring_arm += arm * its_spring;
         sums.push += its_push;
@@ -296,9 +309,9 @@ impl Push<'_> {
         let kept = beyond.select(limit / pull, f64x8::splat(simd, 1.0));
         let held = stretch * kept;
         let lost = (Vec3x8::load(simd, &eight.before) + held).dot(stretch - held);
-        sums.slip += one(lost * (0.5 * law.friction_spring));
+        sums.slip += weights.of(lost * (0.5 * law.friction_spring));
         let hold = held * f64x8::splat(simd, -law.friction_spring);
-        let its_hold = three(hold);
+        let its_hold = weights.of_vector(hold);
         sums.hold += its_hold;
         sums.hold_torque += arm.cross(its_hold);
         eight.held = held.store();
@@ -306,7 +319,7 @@ impl Push<'_> {
 
         // and a dashpot within what the spring leaves of the limit
         let brake = u.across(n) * f64x8::splat(simd, -law.friction_damping);
-        let brake = three(brake * within(simd, hold, brake, limit));
+        let brake = weights.of_vector(brake * within(simd, hold, brake, limit));
         sums.brake += brake;
         sums.brake_torque += arm.cross(brake);
     }
