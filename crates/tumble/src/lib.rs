@@ -70,9 +70,9 @@ pub use pair_law::{PairDamping, PairMaterial};
 pub use restore::StateError;
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{
-    BallsError, Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties, Mesh,
-    MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError, PrincipalAxes,
-    SampleError, Sampling, Shape, ShapeError, ShellError, ball_integrals,
+    AreaError, BallsError, Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties,
+    Mesh, MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError,
+    PrincipalAxes, SampleError, Sampling, Shape, ShapeError, ShellError, ball_integrals,
 };
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::Pull;

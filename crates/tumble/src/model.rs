@@ -59,7 +59,7 @@ pub struct Model {
 pub struct BodyModel {
     /// Its name.
     pub name: String,
-    /// Its particles and mass distribution.
+    /// Its particles and mass distribution; with weights where any of its contacts is stiff per area.
     pub shape: Arc<Shape>,
     /// Mass M (kg).
     pub mass: f64,

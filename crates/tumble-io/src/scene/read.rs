@@ -98,11 +98,14 @@ fn integrator(top: &Reader) -> Integrator {
 
 /// The keys of a material, in any table that may hold them.
 pub fn material(reader: &Reader) -> MaterialOverride {
+    reader.only_one(&["collision_stiffness", "collision_stiffness_per_area"]);
     reader.only_one(&["collision_damping", "restitution"]);
     let dashpot = reader.number("collision_damping", Range::NotNegative).map(Damping::Dashpot);
     let restitution = reader.number("restitution", Range::UpToOne).map(Damping::Restitution);
     MaterialOverride {
         collision_stiffness: reader.number("collision_stiffness", Range::NotNegative),
+        collision_stiffness_per_area: reader
+            .number("collision_stiffness_per_area", Range::NotNegative),
         damping: dashpot.or(restitution),
         friction_stiffness: reader.number("friction_stiffness", Range::NotNegative),
         friction_spring: reader.number("friction_spring", Range::NotNegative),

@@ -227,7 +227,11 @@ fn put_material(table: &mut Table, material: &MaterialOverride) {
             put(table, key, value);
         }
     };
-    number("collision_stiffness", material.collision_stiffness);
+    // of both, the reader would want only one, and this is the one that is heard
+    match material.collision_stiffness_per_area {
+        Some(stiffness) => number("collision_stiffness_per_area", Some(stiffness)),
+        None => number("collision_stiffness", material.collision_stiffness),
+    }
     match material.damping {
         Some(Damping::Dashpot(c)) => number("collision_damping", Some(c)),
         Some(Damping::Restitution(e)) => number("restitution", Some(e)),

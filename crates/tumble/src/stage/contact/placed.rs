@@ -66,7 +66,8 @@ impl<'a> Placed<'a> {
     /// Energy in one friction spring (J).
     fn stored(&self, model: &Model, spring: &FrictionSpring) -> f64 {
         let stiffness = self.body.contacts[spring.wall as usize].friction_spring;
-        0.5 * stiffness * self.stretch(model, spring).length_squared()
+        let weight = self.body.shape.particles().weight(spring.particle as usize);
+        0.5 * stiffness * self.stretch(model, spring).length_squared() * weight
     }
 
     /// Depth of the deepest particle behind a wall (m); 0 where none is behind it.

@@ -28,6 +28,8 @@ pub(super) struct Contact {
     pub stretch: DVec3,
     /// What part of that is left after the latest push.
     pub held: f64,
+    /// Weight of the particle: a factor on all forces of the law.
+    pub weight: f64,
     /// Which particle touches, and which it touches, by slot.
     pub particle: u32,
     pub other: u32,
@@ -156,8 +158,8 @@ impl Contact {
         let n = self.touch.normal;
         let u = self.touch.relative_velocity(first, second);
         let u_n = u.dot(n);
-        let spring = law.stiffness * self.touch.depth;
-        let push = (spring - law.damping * u_n).max(0.0);
+        let spring = self.weight * law.stiffness * self.touch.depth;
+        let push = (spring - self.weight * law.damping * u_n).max(0.0);
         let mut force = n * push;
         let mut brake = n * (push - spring);
         if law.friction > 0.0 {
@@ -188,7 +190,7 @@ impl Contact {
         limit: f64,
         sum: &mut PairForces,
     ) -> (DVec3, DVec3) {
-        let k = law.friction_spring;
+        let k = self.weight * law.friction_spring;
         let mut part = 1.0;
         let mut held = self.stretch;
         let square = k * k * held.length_squared();
@@ -204,7 +206,8 @@ impl Contact {
             self.held = part;
         }
         let hold = held * -k;
-        (hold, within(hold, velocity * -law.friction_damping, limit))
+        let damping = self.weight * law.friction_damping;
+        (hold, within(hold, velocity * -damping, limit))
     }
 }
 

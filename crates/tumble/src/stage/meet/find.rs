@@ -103,6 +103,7 @@ impl Found {
                                 before: DVec3::ZERO,
                                 stretch: DVec3::ZERO,
                                 held: 0.0,
+                                weight: sides.weight(pair, point),
                                 particle: point.particle,
                                 other: if pair.kind == ContactKind::Spheres {
                                     point.other
@@ -158,8 +159,9 @@ impl Found {
             let law = &near.pairs[touching.pair as usize].law;
             let contacts = &self.contacts[touching.start as usize..touching.end as usize];
             let stored = |contact: &Contact| {
-                law.stiffness * contact.touch.depth * contact.touch.depth
-                    + law.friction_spring * contact.stretch.length_squared()
+                contact.weight
+                    * (law.stiffness * contact.touch.depth * contact.touch.depth
+                        + law.friction_spring * contact.stretch.length_squared())
             };
             0.5 * contacts.iter().map(stored).sum::<f64>()
         };
@@ -289,6 +291,21 @@ impl<'a> Sides<'a> {
         Ok(Touch { normal, depth, arm: at - p.position, other_arm: at - q.position })
     }
 
+    /// The weight of the particle that touches.
+    fn weight(&self, pair: &Pair, point: &Point) -> f64 {
+        let body = match pair.kind {
+            ContactKind::Spheres | ContactKind::Wall => return 1.0,
+            ContactKind::FirstInSecond => pair.first,
+            ContactKind::SecondInFirst => pair.second,
+        };
+        let particles = self.model.bodies[body as usize].shape.particles();
+        if particles.is_weighted() {
+            particles.weight(particles.index_in(point.particle) as usize)
+        } else {
+            1.0
+        }
+    }
+
     /// How the point of a contact is fixed to the bodies.
     fn mount(&self, pair: &Pair, depth: f64) -> Mount {
         let radius = |body: u32| list::radius(&self.model.bodies[body as usize]) - 0.5 * depth;
@@ -372,7 +389,7 @@ impl OldSprings<'_> {
 }
 
 /// Where the shapes keep the particles of a spring.
-pub(super) fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
+fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
     let slot = |body: u32, index| model.bodies[body as usize].shape.particles().slot_of(index);
     match spring.kind {
         ContactKind::Spheres => {
@@ -383,11 +400,18 @@ pub(super) fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
     }
 }
 
-/// k_t of a spring (N/m).
-pub(super) fn friction_spring(model: &Model, spring: &PairSpring) -> f64 {
+/// k_t of a spring (N/m), with the weight of its particle.
+fn friction_spring(model: &Model, spring: &PairSpring) -> f64 {
     let first = &model.bodies[spring.first as usize];
     if spring.kind == ContactKind::Wall {
         return first.contacts[spring.second as usize].friction_spring;
     }
-    list::law(first, &model.bodies[spring.second as usize], spring.kind).friction_spring
+    let second = &model.bodies[spring.second as usize];
+    let weight = |body: &BodyModel| body.shape.particles().weight(spring.particle as usize);
+    let weight = match spring.kind {
+        ContactKind::FirstInSecond => weight(first),
+        ContactKind::SecondInFirst => weight(second),
+        ContactKind::Wall | ContactKind::Spheres => 1.0,
+    };
+    weight * list::law(first, second, spring.kind).friction_spring
 }
