@@ -238,7 +238,10 @@ impl<'a> Studio<'a> {
                 let weight = 0.5 * (1.0 - moment.paleness) * (1.0 - moment.paleness);
                 let Some(frame) = self.picture.frames.get(moment.frame) else { continue };
                 for (body, figure) in self.figures.iter().enumerate() {
-                    if let Some(pose) = frame.pose(body) {
+                    // what one sees through lets the light through
+                    if let Some(pose) =
+                        frame.pose(body).filter(|_| !self.picture.bodies[body].is_driven)
+                    {
                         shadow.cast(surface, self.up, &self.camera, figure, &pose, weight);
                     }
                 }
