@@ -188,6 +188,16 @@ impl Default for OutputScene {
 }
 
 impl Scene {
+    /// Whether something may put energy in: a body that moves by itself, or a belt.
+    pub fn does_work(&self) -> bool {
+        let moves = |body: &BodyScene| match body.motion {
+            MotionScene::Free => false,
+            MotionScene::Fixed { surface_velocity } => surface_velocity != DVec3::ZERO,
+            MotionScene::Prescribed(_) => true,
+        };
+        self.bodies.iter().any(moves)
+    }
+
     /// Whether there are several bodies, none of which has a surface that others could meet.
     pub fn bodies_pass_through(&self) -> bool {
         let count: u64 =
