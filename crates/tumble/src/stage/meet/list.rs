@@ -287,6 +287,11 @@ impl Side<'_> {
     }
 }
 
+/// Whether two bodies can touch in this way.
+pub(crate) fn can_touch(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> bool {
+    (first.is_free() || second.is_free()) && kinds(first, second).contains(&kind)
+}
+
 /// The ways in which two bodies can touch.
 fn kinds(first: &BodyModel, second: &BodyModel) -> &'static [ContactKind] {
     use ContactKind::{FirstInSecond, SecondInFirst, Spheres};

@@ -17,6 +17,7 @@ use self::find::Found;
 pub(crate) use self::find::TooFast;
 use self::gather::BodySum;
 use self::list::Lists;
+pub(crate) use self::list::can_touch;
 use self::pose::Pose;
 pub(crate) use self::start::{overlaps, push_apart};
 use crate::parallel::{self, CHUNK};
