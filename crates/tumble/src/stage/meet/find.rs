@@ -228,15 +228,17 @@ impl<'a> Sides<'a> {
         Self { model, first, second }
     }
 
-    /// How far the one can come against the other in a step (m).
+    /// How far the one can come against the other in a step (m), at most.
     fn way(&self, pair: &Pair) -> f64 {
         let Self { model, first, second } = self;
+        let most = first.way + second.way;
+        if most <= pair.limit {
+            return most;
+        }
+        // what both have in common does not count
         let rim = |pose: &Pose, body: u32| {
             pose.angular_velocity.length() * model.bodies[body as usize].extent
         };
-        if pair.limit == f64::INFINITY {
-            return 0.0;
-        }
         let turning = rim(first, pair.first) + rim(second, pair.second);
         model.dt * ((first.velocity - second.velocity).length() + turning)
     }
