@@ -61,6 +61,7 @@ pub(super) struct Touching {
 impl Found {
     /// Finds the contacts among the listed points of a chunk whose first body is number `body`. `old` are all springs
     /// so far, `h` (s) is the time since the latest kick.
+    #[inline(always)]
     pub fn find(
         &mut self,
         near: &mut Near,
@@ -142,6 +143,7 @@ impl Found {
     }
 
     /// The forces of all contacts with the velocities of `poses`; of a first look the totals alone.
+    #[inline(always)]
     pub fn push<const FIRST: bool>(&mut self, near: &Near, poses: &[Pose]) {
         for touching in &mut self.touching {
             let pair = &near.pairs[touching.pair as usize];
