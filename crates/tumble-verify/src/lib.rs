@@ -8,7 +8,9 @@ mod check;
 mod contact;
 mod flight;
 mod friction;
+mod held;
 mod ledger;
+mod meeting;
 mod symmetry;
 
 pub use check::{Case, Check, Outcome};
@@ -28,6 +30,16 @@ pub const CASES: &[Case] = &[
     friction::SLIDING,
     friction::SLOPE,
     friction::ROLLING,
+    meeting::COLLISION,
+    meeting::LEDGER,
+    meeting::ORDER,
+    meeting::CRADLE,
+    meeting::UNEQUAL,
+    meeting::OBLIQUE,
+    held::SLOPE,
+    held::FLOOR,
+    held::BELT,
+    held::PISTON,
     symmetry::SCALE,
     symmetry::WALLS,
     ledger::SCENES,
