@@ -157,7 +157,7 @@ fn collision() -> Outcome {
         let mut world = odd_bodies(integrator, 5e-5)?;
         let start = momenta(&world);
         let (mut worst, mut touched) = ([0.0f64; 2], 0u32);
-        while world.time() < 0.4 {
+        while world.time() < 0.25 {
             let before: Vec<_> = world.bodies().map(|body| body.position()).collect();
             world.step()?;
             // forces act where the bodies are in the middle of a step, or at its start
