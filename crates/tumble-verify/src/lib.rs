@@ -11,6 +11,7 @@ mod friction;
 mod held;
 mod ledger;
 mod meeting;
+mod remeshing;
 mod symmetry;
 
 pub use check::{Case, Check, Outcome};
@@ -40,6 +41,7 @@ pub const CASES: &[Case] = &[
     held::FLOOR,
     held::BELT,
     held::PISTON,
+    remeshing::REMESHING,
     symmetry::SCALE,
     symmetry::WALLS,
     ledger::SCENES,

@@ -5,7 +5,7 @@
 //! what the particles feel adds up to the force and torque that move the body.
 //!
 //! # Limits
-//! Bodies do not touch each other yet; walls are planes.
+//! Bodies touch each other by particles against surfaces ([`Surface`]): edge against edge is not seen. Walls are planes.
 //!
 //! # A tour
 //! - [`Shape`]: particles and mass distribution, made from points or a [`Mesh`].
@@ -70,13 +70,13 @@ pub use pair_law::{PairDamping, PairMaterial};
 pub use restore::StateError;
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{
-    BallsError, Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties, Mesh,
-    MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError, PrincipalAxes,
-    SampleError, Sampling, Shape, ShapeError, ShellError, ball_integrals,
+    AreaError, BallsError, Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties,
+    Mesh, MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError,
+    PrincipalAxes, SampleError, Sampling, Shape, ShapeError, ShellError, ball_integrals,
 };
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::Pull;
 pub use state::{BodyState, ContactKind, FrictionSpring, PairSpring, State, Tally};
-pub use surface::Surface;
+pub use surface::{Overlaps, Surface};
 pub use wall::{WallBox, WallPlane};
 pub use world::{BodyView, World};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use tumble::{
     Body, BuildError, DMat3, DQuat, DVec3, Damping, Integrator, MassModel, Material, Mesh, Motion,
-    Prescribed, Primitive, Sampling, Shape, Surface, WallPlane, World, WorldBuilder,
+    Overlaps, Prescribed, Primitive, Sampling, Shape, Surface, WallPlane, World, WorldBuilder,
 };
 
 fn ball(radius: f64) -> Shape {
@@ -359,6 +359,8 @@ fn bodies_at_one_place_are_refused_soon_whatever_their_number() {
             (0..2000).map(|_| Body::new(Arc::clone(shape)).surface(surface).position(DVec3::ONE));
         let begun = std::time::Instant::now();
         let world = many.fold(space(material(1e4, 0.5, 0.0), 1e-4), WorldBuilder::body);
+        // there is no room to push them apart either
+        world.clone().overlaps(Overlaps::Push).build().unwrap_err();
         let errors = world.build().unwrap_err();
         println!("{surface:?}: {} errors, {:?}", errors.0.len(), begun.elapsed());
         assert!(errors.0.iter().all(|error| matches!(error, BuildError::Overlap { .. })));

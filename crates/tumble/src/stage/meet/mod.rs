@@ -6,19 +6,21 @@
 //! any moment, and a run that goes on from a checkpoint comes to the same bits.
 
 mod contact;
+mod crowd;
 mod find;
 mod gather;
 mod grid;
 mod list;
-mod overlap;
 mod pose;
+mod start;
 
 use self::find::Found;
 pub(crate) use self::find::TooFast;
 use self::gather::BodySum;
 use self::list::Lists;
-pub(crate) use self::overlap::overlaps;
+pub(crate) use self::list::can_touch;
 use self::pose::Pose;
+pub(crate) use self::start::{overlaps, push_apart};
 use crate::parallel::{self, CHUNK};
 use crate::{BodyModel, Integrator, Model, PairSpring, Scratch, State};
 
@@ -43,14 +45,14 @@ pub fn meet(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     let meeting = &mut scratch.meeting;
     meeting.place(model, state);
     meeting.find(model, &state.pair_springs, h);
-    meeting.push();
-    meeting.gather();
     let is_damped = |body: &BodyModel| body.pair_material.is_damped();
     if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
+        meeting.push::<true>();
+        meeting.gather::<true>();
         meeting.half_kick(model, &scratch.forces, h);
-        meeting.push();
-        meeting.gather();
     }
+    meeting.push::<false>();
+    meeting.gather::<false>();
     meeting.give(&mut scratch.forces);
 }
 
@@ -83,9 +85,11 @@ impl Meeting {
         });
     }
 
-    fn push(&mut self) {
+    fn push<const FIRST: bool>(&mut self) {
         let (poses, chunks) = (&self.poses, &self.lists.chunks);
-        parallel::each(&mut self.found, |index, found| found.push(&chunks[index], poses));
+        parallel::each(&mut self.found, |index, found| {
+            found.push::<FIRST>(&chunks[index], poses);
+        });
     }
 
     /// Energy in the springs between bodies and between spheres and walls, normal and tangential (J).

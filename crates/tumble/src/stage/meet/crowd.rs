@@ -1,4 +1,4 @@
-//! Bodies that start in each other.
+//! Bodies that start in each other although contact does not say so, or says it too often.
 //!
 //! Contact knows particles and what they touch. Bodies that were put at one place by mistake may have no particle in each other, and so
 //! many pairs that lists of them would fill the memory. So they are looked for first.
@@ -9,29 +9,12 @@ use std::sync::Arc;
 use glam::{DMat3, DVec3};
 
 use super::grid::{Ball, Grid};
-use super::{Meeting, list};
-use crate::{BodyModel, BodyState, ContactKind, Model, State, Surface};
+use super::list;
+use super::start::{DEEP, Overlap};
+use crate::{BodyModel, BodyState, Model, State, Surface};
 
-/// Bodies that start deeper in each other than this part of their grain were put there by mistake.
-const DEEP: f64 = 0.1;
 /// So many pairs are named; whoever put more there by mistake did it by one mistake.
-const MOST: usize = 100;
-
-/// Two bodies, and how deep they are in each other (m).
-pub(crate) type Overlap = (u32, u32, f64);
-
-/// Pairs of bodies that are deeper in each other than a tenth of what their skins are measured by: the first hundred.
-pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<Overlap> {
-    if !model.meets {
-        return Vec::new();
-    }
-    let finders = [at_one_place, around_a_centre, by_contact];
-    let found = finders.iter().map(|find| find(model, state)).find(|found| !found.is_empty());
-    let mut found = found.unwrap_or_default();
-    found.sort_unstable_by_key(|overlap| (overlap.0, overlap.1));
-    found.truncate(MOST);
-    found
-}
+pub(super) const MOST: usize = 100;
 
 /// Whether a depth (m) is one that contact alone would not make.
 fn is_deep(model: &Model, (first, second, depth): Overlap) -> bool {
@@ -40,7 +23,7 @@ fn is_deep(model: &Model, (first, second, depth): Overlap) -> bool {
 }
 
 /// Bodies of one shape at exactly one place, turned alike: each with the next of them.
-fn at_one_place(model: &Model, state: &State) -> Vec<Overlap> {
+pub(super) fn at_one_place(model: &Model, state: &State) -> Vec<Overlap> {
     let solid = |&body: &usize| model.bodies[body].surface != Surface::None;
     let mut order: Vec<usize> = (0..model.bodies.len()).filter(solid).collect();
     let place = |body: &BodyState| {
@@ -70,7 +53,7 @@ fn thickness(body: &BodyModel) -> f64 {
 }
 
 /// Bodies with meshes where the centre of mass of the one is within both.
-fn around_a_centre(model: &Model, state: &State) -> Vec<Overlap> {
+pub(super) fn around_a_centre(model: &Model, state: &State) -> Vec<Overlap> {
     let balls = model.bodies.iter().zip(&state.bodies).map(|(body, state)| Ball {
         centre: state.position,
         reach: body.extent,
@@ -98,27 +81,4 @@ fn around_a_centre(model: &Model, state: &State) -> Vec<Overlap> {
 fn depth(body: &BodyModel, place: DVec3) -> f64 {
     let nearest = body.solid.as_ref().and_then(|solid| solid.query(place, 0, 0.0));
     nearest.map_or(0.0, |nearest| -nearest.distance)
-}
-
-/// What contact finds.
-fn by_contact(model: &Model, state: &State) -> Vec<Overlap> {
-    let mut meeting = Meeting::default();
-    meeting.place(model, state);
-    meeting.find(model, &[], 0.0);
-    let mut overlaps = Vec::new();
-    for (found, near) in meeting.found.iter().zip(&meeting.lists.chunks) {
-        for touching in &found.touching {
-            let pair = &near.pairs[touching.pair as usize];
-            if pair.kind == ContactKind::Wall {
-                continue;
-            }
-            let contacts = &found.contacts[touching.start as usize..touching.end as usize];
-            let depth = contacts.iter().fold(0.0f64, |depth, contact| depth.max(contact.depth));
-            if is_deep(model, (pair.first, pair.second, depth)) {
-                overlaps.push((pair.first, pair.second, depth));
-            }
-        }
-    }
-    overlaps.dedup_by_key(|overlap| (overlap.0, overlap.1));
-    overlaps
 }
