@@ -8,7 +8,9 @@ mod check;
 mod contact;
 mod flight;
 mod friction;
+mod held;
 mod ledger;
+mod meeting;
 mod remeshing;
 mod symmetry;
 
@@ -29,6 +31,16 @@ pub const CASES: &[Case] = &[
     friction::SLIDING,
     friction::SLOPE,
     friction::ROLLING,
+    meeting::COLLISION,
+    meeting::LEDGER,
+    meeting::ORDER,
+    meeting::CRADLE,
+    meeting::UNEQUAL,
+    meeting::OBLIQUE,
+    held::SLOPE,
+    held::FLOOR,
+    held::BELT,
+    held::PISTON,
     remeshing::REMESHING,
     symmetry::SCALE,
     symmetry::WALLS,

@@ -92,10 +92,9 @@ impl Found {
             let start = self.contacts.len();
             let mut quiet = f64::INFINITY;
             for point in &mut near.points[pair.start as usize..pair.end as usize] {
-                if travel + way > point.quiet && way > pair.limit && self.too_fast.is_none() {
-                    self.too_fast = Some(too_fast(model, pair, point, way));
-                }
-                if travel >= point.quiet {
+                // what the lists remember is no reason to refuse a step: it is looked at anew
+                let passes = |quiet: f64| way > pair.limit && travel + way > quiet;
+                if travel >= point.quiet || passes(point.quiet) {
                     match sides.touch(pair, point) {
                         Ok(touch) => {
                             point.quiet = 0.0;
@@ -123,6 +122,9 @@ impl Found {
                             }
                         }
                         Err(gap) => point.quiet = travel + gap,
+                    }
+                    if passes(point.quiet) && self.too_fast.is_none() {
+                        self.too_fast = Some(too_fast(model, pair, point, way));
                     }
                 }
                 quiet = quiet.min(point.quiet);

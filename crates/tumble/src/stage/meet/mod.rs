@@ -6,6 +6,7 @@
 //! any moment, and a run that goes on from a checkpoint comes to the same bits.
 
 mod contact;
+mod crowd;
 mod find;
 mod gather;
 mod grid;

@@ -56,7 +56,7 @@ impl Pose {
             angular_velocity: omega,
             belt,
             orientation: state.orientation,
-            travel: 0.0,
+            travel: rounding(body, state),
             skin: 0.0,
             way: model.dt * (state.velocity.length() + omega.length() * body.extent),
         }
@@ -69,8 +69,8 @@ impl Pose {
         // a turn by θ takes a point at r by 2 r sin(θ/2)
         let way = (state.position - self.position).length()
             + 2.0 * body.extent * DVec3::new(turn.x, turn.y, turn.z).length();
-        // what rounding may hide
-        let travel = self.travel + way * (1.0 + 1e-9);
+        // what rounding may hide of the way, and of places that it is held against
+        let travel = self.travel + way * (1.0 + 1e-9) + rounding(body, state);
         Self { travel, skin: self.skin, ..Self::new(model, index, state) }
     }
 
@@ -85,4 +85,9 @@ impl Pose {
     pub fn velocity_at(&self, arm: DVec3) -> DVec3 {
         self.velocity + self.angular_velocity.cross(arm)
     }
+}
+
+/// How far rounding may put a point of a body from where it is (m), and then some.
+fn rounding(body: &BodyModel, state: &BodyState) -> f64 {
+    16.0 * f64::EPSILON * (state.position.length() + body.extent)
 }

@@ -2,15 +2,15 @@
 
 use glam::DVec3;
 
-use super::Meeting;
 use super::contact::Contact;
 use super::find::Touching;
 use super::list::{self, Pair};
+use super::{Meeting, crowd};
 use crate::stage::Placed;
 use crate::{ContactKind, Model, State};
 
 /// Bodies that start deeper in each other than this part of their grain were put there by mistake.
-const DEEP: f64 = 0.1;
+pub(super) const DEEP: f64 = 0.1;
 /// Bodies are moved apart until they are no deeper in each other than this part of their grain.
 const APART: f64 = 1e-3;
 /// Rounds of moving apart after which bodies have no room.
@@ -20,11 +20,25 @@ const ROUNDS: usize = 2000;
 pub(crate) type Overlap = (u32, u32, f64);
 
 /// Pairs of bodies that are deeper in each other than a tenth of the radius of their spheres, or than a hundredth of the
-/// size of a body without.
+/// size of a body without: the first hundred.
 pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<Overlap> {
     if !model.meets {
         return Vec::new();
     }
+    let mut overlaps = crowd::at_one_place(model, state);
+    // of a crowd nothing more need be known
+    if overlaps.len() < crowd::MOST {
+        overlaps.extend(crowd::around_a_centre(model, state));
+        overlaps.extend(by_contact(model, state));
+    }
+    overlaps.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(b.2.total_cmp(&a.2)));
+    overlaps.dedup_by_key(|overlap| (overlap.0, overlap.1));
+    overlaps.truncate(crowd::MOST);
+    overlaps
+}
+
+/// Those that contact finds.
+fn by_contact(model: &Model, state: &State) -> Vec<Overlap> {
     let mut meeting = Meeting::default();
     meeting.place(model, state);
     meeting.find(model, &[], 0.0);
@@ -46,6 +60,10 @@ pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<Overlap> {
 /// et al., J. Vis. Commun. Image R. 18 (2007) 109).
 pub(crate) fn push_apart(model: &Model, state: &mut State) -> bool {
     let mut meeting = Meeting::default();
+    // a crowd at one place has no way to go apart
+    if crowd::at_one_place(model, state).len() >= crowd::MOST {
+        return false;
+    }
     let mut ways = vec![(DVec3::ZERO, 0.0); model.bodies.len()];
     for _ in 0..ROUNDS {
         meeting.place(model, state);
