@@ -2,7 +2,7 @@
 
 import { attribute, buffer, program, setView } from './gl.js';
 import { coarse, corners, edges } from './geometry.js';
-import { BODY_COLOURS } from './palette.js';
+import { BODY_COLOURS, DRIVEN_COLOUR } from './palette.js';
 import { BODY_FRAGMENT, BODY_VERTEX, DEPTH_FRAGMENT, EDGE_FRAGMENT, EDGE_VERTEX } from './shaders.js';
 import { PARTICLE_FRAGMENT, PARTICLE_VERTEX } from './shaders.js';
 
@@ -48,7 +48,7 @@ export class Bodies {
       // two equal moments and many faces: the body looks the same all around, so it gets markings
       const { mesh } = this.groups[shape];
       const round = mesh && !mesh.fewFaces && moments[2] > 0 && (moments[1] - moments[0] < 0.02 * moments[2] || moments[2] - moments[1] < 0.02 * moments[2]);
-      this.instances.set([...this.colours[body], round ? 1 : 0], FLOATS * slot + 8);
+      this.instances.set([...this.colours[body], bodies[body].driven ? 2 : round ? 1 : 0], FLOATS * slot + 8);
     });
   }
 
@@ -144,12 +144,21 @@ export class Bodies {
   }
 
   draw(view) {
-    this.drawMeshes(this.body, view);
+    this.drawMeshes(this.body, view, 0);
   }
 
-  drawMeshes(how, view) {
+  // bodies that something other than forces moves, over all others: a drum must not hide what is in it
+  drawDriven(view) {
+    if (!this.head.bodies.some((body) => body.driven)) return;
+    this.gl.depthMask(false);
+    this.drawMeshes(this.body, view, 1);
+    this.gl.depthMask(true);
+  }
+
+  drawMeshes(how, view, ghosts = 0) {
     const { gl } = this;
     setView(gl, how, view);
+    if (how.at.ghosts) gl.uniform1f(how.at.ghosts, ghosts);
     for (const group of this.groups) {
       if (!group.mesh || !group.count) continue;
       const { array, count } = this.isRough ? this.roughMesh(group) : group.mesh;
@@ -207,6 +216,7 @@ export function bodyColours(head) {
   const many = head.bodies.length > BODY_COLOURS.length && head.shapes.length > 1;
   const count = BODY_COLOURS.length;
   return head.bodies.map((body, index) => {
+    if (body.driven) return DRIVEN_COLOUR;
     const base = BODY_COLOURS[(many ? body.shape : index) % count];
     const tone = many || index >= count ? 1 + 0.12 * Math.sin(2.4 * index) : 1;
     return base.map((c) => Math.min(c * tone, 1));

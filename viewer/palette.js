@@ -18,6 +18,9 @@ export const LEDGER = [
 // calm colours for bodies: between those of the palette and the paper
 export const BODY_COLOURS = ['#3f8fc9', '#e8a33d', '#35a383', '#c983ac', '#dd7a45', '#7ab8dd', '#b7a93a', '#8d86c9'].map(rgb);
 
+// of bodies that something other than forces moves
+export const DRIVEN_COLOUR = rgb('#969aa0');
+
 export const THEMES = {
   light: {
     top: rgb('#f7f6f2'),

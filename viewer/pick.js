@@ -2,10 +2,15 @@
 
 import { add, conjugate, cross, dot, length, normalize, rotate, scale, sub } from './math.js';
 
-// the nearest hit: { body, point, distance }, or null
+// the nearest hit: { body, point, distance }, or null; a driven body only where no other is hit
 export function pickBody(ray, head, moment) {
+  return pickOf(ray, head, moment, (body) => !body.driven) ?? pickOf(ray, head, moment, (body) => body.driven);
+}
+
+function pickOf(ray, head, moment, isMeant) {
   let best = null;
   for (let body = 0; body < head.bodies.length; body++) {
+    if (!isMeant(head.bodies[body])) continue;
     const shape = head.shapes[head.bodies[body].shape];
     const centre = moment.position(body);
     const along = dot(sub(centre, ray.from), ray.along);

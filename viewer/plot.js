@@ -8,6 +8,7 @@ const GRAVITATIONAL = 1;
 const TOTAL = 6;
 const RESIDUAL = 7;
 const WORK = 8;
+const DRIVEN = 9;
 const LEFT = 58;
 const RIGHT = 10;
 const TOP = 8;
@@ -104,6 +105,14 @@ export class Plot {
   work(frame) {
     const start = ({ ledger }) => ledger[TOTAL] - ledger[RESIDUAL];
     const work = start(frame) - start(this.player.film.first);
+    const size = frame.ledger.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
+    return Math.abs(work) > 1e-9 * size ? work : 0;
+  }
+
+  // What driven bodies have put in (J): the total is the sum of the parts less this. Nothing, where it is no more
+  // than rounding.
+  driven(frame) {
+    const work = LEDGER.reduce((sum, _, k) => sum + frame.ledger[k], 0) - frame.ledger[TOTAL];
     const size = frame.ledger.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
     return Math.abs(work) > 1e-9 * size ? work : 0;
   }
@@ -222,7 +231,8 @@ export class Plot {
   }
 
   writeLegend(used, hasWork) {
-    const shown = [...used, hasWork].map(Number).join('');
+    const isDriven = this.player.film.frames.some((frame) => this.driven(frame) !== 0);
+    const shown = [...used, hasWork, isDriven].map(Number).join('');
     if (shown === this.legendKey) return;
     this.legendKey = shown;
     this.values = new Map();
@@ -233,6 +243,7 @@ export class Plot {
     };
     const parts = LEDGER.map((part, k) => (used[k] ? item(k, part.label, part.colour, part.note) : null)).filter(Boolean);
     const rest = [item(RESIDUAL, 'Residual (integrator’s error)', 'transparent', 'what the total has moved by since the start, without the work of the hand')];
+    if (isDriven) rest.push(item(DRIVEN, 'Work put in', 'transparent', 'what bodies whose motion is prescribed have added since the start: the total is the parts less this'));
     if (hasWork) rest.push(item(WORK, 'Work of the hand', 'transparent', 'what pulling and changed numbers have added since the start'));
     this.legend.replaceChildren(element('h2', {}, 'Energy'), ...parts, item(TOTAL, 'Total', 'var(--ink)'), ...rest);
     const last = this.player.film.frames.at(-1);
@@ -244,7 +255,7 @@ export class Plot {
   tick(frame) {
     if (!this.values || !frame) return;
     for (const [key, node] of this.values) {
-      node.textContent = quantity(key === WORK ? this.work(frame) : frame.ledger[key], 'J', 4);
+      node.textContent = quantity(key === WORK ? this.work(frame) : key === DRIVEN ? this.driven(frame) : frame.ledger[key], 'J', 4);
     }
   }
 

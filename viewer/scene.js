@@ -235,6 +235,7 @@ export class Scene {
     if (moment.frame && shows.edges) bodies.drawEdges(view);
     const pixels = [this.canvas.width, this.canvas.height];
     if (moment.frame) bodies.drawParticles(view, shows.particles, pixels);
+    if (moment.frame && shows.meshes) bodies.drawDriven(view);
     if (shows.walls) this.lines.drawFrame(view, this.ratio);
     if (shows.paths) this.lines.drawPaths(view, this.ratio, moment, film, shows.pathColour);
     if (shows.thread) {

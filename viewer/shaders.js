@@ -62,7 +62,7 @@ vec3 lit(vec3 colour, vec3 place, vec3 n, float open) {
 const POSE = `
 layout(location = 4) in vec4 place;   // and whether it is picked out
 layout(location = 5) in vec4 turn;    // w x y z
-layout(location = 6) in vec4 colour;  // and whether it has markings
+layout(location = 6) in vec4 colour;  // and whether it has markings (1), or is driven (2)
 `;
 
 export const BODY_VERTEX = `${HEAD}${ROTATE}${POSE}
@@ -89,23 +89,31 @@ in vec3 atBody;
 in vec3 toward;
 flat in vec4 paint;
 flat in float picked;
+uniform float ghosts; // 1: driven bodies, as one sees through them; 0: all others
 out vec4 result;
 float side(float x) {
   return clamp(x / max(fwidth(x), 1e-6), -1.0, 1.0);
 }
 void main() {
+  bool driven = paint.a > 1.5;
+  if (driven != (ghosts > 0.5)) discard;
   vec3 n = normalize(gl_FrontFacing ? toward : -toward);
   // a round body shows its turning by its markings
   float octant = side(atBody.x) * side(atBody.y) * side(atBody.z);
-  vec3 colour = paint.rgb * (1.0 - paint.a * (0.13 - 0.13 * octant));
+  vec3 colour = paint.rgb * (1.0 - (driven ? 0.0 : paint.a) * (0.13 - 0.13 * octant));
   float open = sunlight(atWorld, n, sun);
   vec3 seen = lit(colour, atWorld, n, open);
   float rim = pow(1.0 - max(dot(n, normalize(eye - atWorld)), 0.0), 2.0);
-  result = vec4(mix(seen, vec3(1.0), picked * (0.06 + 0.5 * rim)), 1.0);
+  vec3 shown = mix(seen, vec3(1.0), picked * (0.06 + 0.5 * rim));
+  // a wall of glass: clear where one looks straight at it, milky where along it
+  float alpha = driven ? 0.16 + 0.4 * rim : 1.0;
+  result = vec4(alpha * shown, alpha);
 }`;
 
+// what one sees through lets the sun through
 export const DEPTH_FRAGMENT = `${HEAD}
-void main() {}`;
+flat in vec4 paint;
+void main() { if (paint.a > 1.5) discard; }`;
 
 export const EDGE_VERTEX = `${HEAD}${ROTATE}${POSE}
 layout(location = 0) in vec3 position;

@@ -125,7 +125,12 @@ fn draw(folder: &Path, sample: &Sample, size: (u32, u32)) -> Result<(), Box<dyn 
     let owned: Vec<_> = sample.meshes.iter().zip(&names).map(body).collect();
     let bodies: Vec<PictureBody> = owned
         .iter()
-        .map(|(vertices, triangles, name)| PictureBody { name, vertices, triangles })
+        .map(|(vertices, triangles, name)| PictureBody {
+            name,
+            vertices,
+            triangles,
+            is_driven: false,
+        })
         .collect();
     let picture = MotionPicture {
         title: sample.title,

@@ -25,7 +25,7 @@ mod state;
 /// How every checkpoint begins: bytes that a transfer as text would change.
 pub const MAGIC: [u8; 12] = *b"\x89TUMBLE\r\n\x1a\n\0";
 /// The version of the format that is written.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 /// Bytes before the first section.
 const HEAD: usize = 12 + 4 + 8;
 /// Bytes after the last section.

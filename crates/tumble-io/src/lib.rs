@@ -2,6 +2,7 @@
 
 pub mod checkpoint;
 pub mod export;
+mod looks;
 pub mod mesh;
 pub mod page;
 pub mod picture;

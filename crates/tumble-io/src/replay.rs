@@ -18,7 +18,7 @@ use tumble::{DQuat, DVec3, World};
 use crate::checkpoint::read_checkpoint;
 use crate::plot::EnergyRow;
 use crate::run::{
-    CHECKPOINT, LEDGER, LEDGER_HEADER, RowError, Rows, SCENE, TRAJECTORY, TRAJECTORY_HEADER,
+    CHECKPOINT, LEDGER, RowError, Rows, SCENE, TRAJECTORY, TRAJECTORY_HEADER, ledger_header,
     parse_ledger, parse_trajectory,
 };
 use crate::scene::{LoadOptions, Loaded, Scene, SceneError, load_file};
@@ -105,13 +105,14 @@ impl Replay {
             scene.name = name;
         }
         let mut trajectory = Rows::open(folder.join(TRAJECTORY), TRAJECTORY_HEADER)?;
-        let mut rows = Rows::open(folder.join(LEDGER), LEDGER_HEADER)?;
+        let has_work = scene.does_work();
+        let mut rows = Rows::open(folder.join(LEDGER), ledger_header(has_work))?;
         let (mut frames, mut ledger) = (Vec::<ReplayFrame>::new(), Vec::new());
         while let Some(frame) = read_frame(&mut trajectory, &world)? {
             if frames.last().is_some_and(|last| last.time >= frame.time) {
                 return Err(trajectory.wrong("has a time that does not rise").into());
             }
-            ledger.push(read_ledger(&mut rows, frame.time)?);
+            ledger.push(read_ledger(&mut rows, frame.time, has_work)?);
             frames.push(frame);
         }
         if frames.is_empty() {
@@ -212,12 +213,14 @@ fn pose(numbers: [f64; 16]) -> Option<Pose> {
 }
 
 /// The row of `energy.csv` that goes with the frame at `time` (s).
-fn read_ledger(rows: &mut Rows, time: f64) -> Result<EnergyRow, RowError> {
+fn read_ledger(rows: &mut Rows, time: f64, has_work: bool) -> Result<EnergyRow, RowError> {
     let Some(row) = rows.next()? else {
         let what = format!("has no row of t = {time} s; {MEND}");
         return Err(if rows.torn { torn(rows) } else { rows.wrong(&what) });
     };
-    let row = parse_ledger(&row).ok_or_else(|| rows.wrong("is no row of nine numbers"))?;
+    let count = if has_work { "ten" } else { "nine" };
+    let row = parse_ledger(&row, has_work)
+        .ok_or_else(|| rows.wrong(&format!("is no row of {count} numbers")))?;
     if row.time != time {
         let what = format!("is the row of t = {} s where that of {time} s is due", row.time);
         return Err(rows.wrong(&what));

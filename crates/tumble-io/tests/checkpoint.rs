@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
+use tumble::{ContactKind, DVec3, PairSpring};
 use tumble_io::checkpoint::{
     Checkpoint, CheckpointError, MAGIC, VERSION, parse_checkpoint, read_checkpoint,
 };
@@ -87,6 +88,55 @@ fn the_sign_of_zero_and_the_smallest_numbers_survive() {
     assert!(read.state.bodies[0].position.x.is_sign_negative());
 }
 
+/// Springs between bodies, which the scene does not have by itself.
+fn with_pair_springs() -> Checkpoint {
+    let kinds = [
+        ContactKind::Wall,
+        ContactKind::Spheres,
+        ContactKind::FirstInSecond,
+        ContactKind::SecondInFirst,
+    ];
+    let mut own = checkpoint().clone();
+    own.state.pair_springs = (0..)
+        .zip(kinds)
+        .map(|(i, kind)| PairSpring {
+            first: i,
+            second: i + 1,
+            kind,
+            particle: 7 * i,
+            other: u32::MAX - i,
+            stretch: DVec3::new(1e-3, -0.0, f64::from(i)),
+        })
+        .collect();
+    own.state.tally.work = -12.5;
+    own
+}
+
+#[test]
+fn springs_between_bodies_and_the_work_survive() {
+    let written = with_pair_springs();
+    let read = parse_checkpoint(&written.to_bytes()).unwrap();
+    assert_eq!(read, written);
+    assert_eq!(read.state.hash(), written.state.hash());
+}
+
+#[test]
+fn springs_of_no_kind_and_more_than_there_are_make_no_sense() {
+    let bytes = with_pair_springs().to_bytes();
+    // from the end: checksum, tally, then the last spring
+    let tally = bytes.len() - 32 - 6 * 8;
+    let kind = tally - 41 + 8;
+    assert_eq!(bytes[kind], 3);
+    let count = tally - 4 * 41 - 8;
+    assert_eq!(bytes[count], 4);
+    for (at, value) in [(kind, 4), (kind, 255), (count, 3), (count, 5), (count + 7, 255)] {
+        let mut other = bytes.clone();
+        other[at] = value;
+        let error = parse_checkpoint(&sign(other)).unwrap_err();
+        assert!(matches!(error, CheckpointError::Nonsense("the state")), "{at} {value}: {error}");
+    }
+}
+
 #[test]
 fn every_shorter_file_is_cut_short() {
     let bytes = checkpoint().to_bytes();
@@ -111,7 +161,7 @@ fn other_files_are_told_by_what_they_are() {
     let mut later = checkpoint().to_bytes();
     later[MAGIC.len()..][..4].copy_from_slice(&(VERSION + 6).to_le_bytes());
     says(&later, "damaged");
-    says(&sign(later), "format version 8, but this program reads version 2");
+    says(&sign(later), "format version 9, but this program reads version 3");
     let folder = tempfile::tempdir().unwrap();
     assert!(matches!(read_checkpoint(folder.path()), Err(CheckpointError::NoFile)));
     let missing = read_checkpoint(&folder.path().join("no")).unwrap_err();

@@ -181,3 +181,22 @@ fn write_but(desk: &TempDir, file: &str, change: impl FnOnce(Vec<u8>) -> Vec<u8>
     let path = desk.path().join(file);
     fs::write(&path, change(fs::read(&path).unwrap())).unwrap();
 }
+
+#[test]
+fn a_driven_run_has_a_column_for_the_work() {
+    let header = |motion: &str| {
+        let text = format!("{SCENE}motion = \"{motion}\"\n");
+        let source = Source { name: "s.toml".to_owned(), text };
+        let loaded = load_text("s", source, Path::new("."), &LoadOptions::default()).unwrap();
+        let desk = tempfile::tempdir().unwrap();
+        let folder = RunFolder::create(desk.path(), false).unwrap();
+        run(loaded, &folder, &mut |_| true).unwrap();
+        let replay = Replay::open(desk.path()).unwrap();
+        assert_eq!(replay.ledger[0].work, 0.0);
+        let rows = fs::read_to_string(desk.path().join("energy.csv")).unwrap();
+        rows.lines().next().unwrap().to_owned()
+    };
+    assert!(header("free").ends_with(",total,residual"));
+    assert!(header("fixed").ends_with(",total,residual"));
+    assert!(header("prescribed").ends_with(",total,residual,work"));
+}

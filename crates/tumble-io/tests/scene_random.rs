@@ -37,13 +37,14 @@ fn judge(loaded: Result<Loaded, SceneError>) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-const WORDS: [&str; 70] = [
+const WORDS: [&str; 71] = [
     "duration",
     "dt",
     "gravity",
     "integrator",
     "[collision]",
     "collision_stiffness",
+    "collision_stiffness_per_area",
     "[box]",
     "min",
     "max",
@@ -117,7 +118,7 @@ fn words() -> impl Strategy<Value = String> {
 
 /// Lines `key = value` that are TOML most of the time.
 fn lines() -> impl Strategy<Value = String> {
-    vec((select(&WORDS[..41]), select(&WORDS[41..])), 0..12).prop_map(|lines| {
+    vec((select(&WORDS[..42]), select(&WORDS[42..])), 0..12).prop_map(|lines| {
         let line = |(key, value): (&str, &str)| match key.starts_with('[') {
             true => format!("{key}\n"),
             false => format!("{key} = {value}\n"),

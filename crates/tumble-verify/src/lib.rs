@@ -9,6 +9,7 @@ mod contact;
 mod flight;
 mod friction;
 mod ledger;
+mod remeshing;
 mod symmetry;
 
 pub use check::{Case, Check, Outcome};
@@ -28,6 +29,7 @@ pub const CASES: &[Case] = &[
     friction::SLIDING,
     friction::SLOPE,
     friction::ROLLING,
+    remeshing::REMESHING,
     symmetry::SCALE,
     symmetry::WALLS,
     ledger::SCENES,

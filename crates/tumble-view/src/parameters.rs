@@ -79,6 +79,9 @@ impl List {
         if let Some(k) = material.collision_stiffness {
             self.log(&format!("{table}.collision_stiffness"), k, "N/m", (1e2, 1e7));
         }
+        if let Some(k) = material.collision_stiffness_per_area {
+            self.log(&format!("{table}.collision_stiffness_per_area"), k, "N/m³", (1e4, 1e10));
+        }
         match material.damping {
             Some(Damping::Restitution(e)) => {
                 self.linear(&format!("{table}.restitution"), e, "", (0.01, 1.0));

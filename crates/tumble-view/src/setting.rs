@@ -8,13 +8,10 @@ use tumble_io::scene::{LoadOptions, Loaded, Scene, Source, load_text};
 
 use crate::command::Setting;
 
-/// Keys of which a table may hold only one: setting one takes the others out.
-const RIVALS: [&[&str]; 2] =
-    [&["collision_damping", "restitution"], &["particle_mass", "mass", "density"]];
-
 /// The keys of a material: what a body may change at once.
-const MATERIAL_KEYS: [&str; 6] = [
+const MATERIAL_KEYS: [&str; 7] = [
     "collision_stiffness",
+    "collision_stiffness_per_area",
     "collision_damping",
     "restitution",
     "friction_stiffness",
@@ -43,15 +40,9 @@ pub fn load_with(scene: &Scene, setting: &Setting) -> Result<Loaded, String> {
         .map_err(|error| format!("the scene cannot be read again: {error}"))?;
     let path: Vec<&str> = key.split('.').collect();
     let mut removed = false;
-    visit(&mut root, &path, &mut |table, last| match value {
-        Some(_) => {
-            let rivals = RIVALS.iter().find(|rivals| rivals.contains(&last));
-            for rival in rivals.into_iter().copied().flatten().filter(|rival| **rival != last) {
-                table.remove(*rival);
-            }
-        }
-        None => removed |= table.remove(last).is_some(),
-    });
+    if value.is_none() {
+        visit(&mut root, &path, &mut |table, last| removed |= table.remove(last).is_some());
+    }
     if value.is_none() && !removed {
         return Err(format!("`{key}` is not set"));
     }

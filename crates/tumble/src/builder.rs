@@ -1,14 +1,17 @@
 //! From a description to a world: every value is checked here, once.
 
+mod twins;
+
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
+use self::twins::Twins;
 use crate::surface::Solids;
 use crate::{
     BodyModel, BodyState, BuildError, BuildErrors, ContactLaw, Damping, DragModes, Integrator,
-    Material, MaterialOverride, Model, Motion, PairMaterial, Shape, State, Surface, WallBox,
-    WallPlane, World, critical_dt,
+    Material, MaterialOverride, Model, Motion, Overlaps, PairMaterial, Shape, State, Surface,
+    WallBox, WallPlane, World, critical_dt,
 };
 
 /// A body as a user describes it.
@@ -110,6 +113,13 @@ impl Body {
     }
 }
 
+/// What bodies of one shape share.
+#[derive(Default)]
+struct Shared {
+    solids: Solids,
+    twins: Twins,
+}
+
 /// A world as a user describes it; [`WorldBuilder::build`] checks it.
 #[derive(Clone, Debug)]
 pub struct WorldBuilder {
@@ -120,6 +130,7 @@ pub struct WorldBuilder {
     energy_tolerance: Option<f64>,
     force: bool,
     material: Material,
+    overlaps: Overlaps,
     walls: Vec<(WallPlane, MaterialOverride)>,
     bodies: Vec<Body>,
 }
@@ -135,6 +146,7 @@ impl Default for WorldBuilder {
             energy_tolerance: None,
             force: false,
             material: Material::default(),
+            overlaps: Overlaps::default(),
             walls: Vec::new(),
             bodies: Vec::new(),
         }
@@ -185,6 +197,12 @@ impl WorldBuilder {
         self
     }
 
+    /// What is done about bodies that start in each other; they are refused unless said.
+    pub fn overlaps(mut self, overlaps: Overlaps) -> Self {
+        self.overlaps = overlaps;
+        self
+    }
+
     /// Adds a wall.
     pub fn wall(self, wall: WallPlane) -> Self {
         self.wall_of(wall, MaterialOverride::default())
@@ -225,11 +243,10 @@ impl WorldBuilder {
             meets: self.bodies.iter().any(|body| body.surface != Surface::None),
             bodies: Vec::with_capacity(self.bodies.len()),
         };
-        let mut state = State::default();
-        let mut solids = Solids::default();
+        let (mut state, mut shared) = (State::default(), Shared::default());
         for (index, body) in self.bodies.iter().enumerate() {
             let name = body.name.clone().unwrap_or_else(|| format!("body {index}"));
-            match self.start(&model, name, body, &mut solids) {
+            match self.start(&model, name, body, &mut shared) {
                 Ok((body_model, body_state)) => {
                     model.bodies.push(body_model);
                     state.bodies.push(body_state);
@@ -239,6 +256,9 @@ impl WorldBuilder {
             }
         }
         errors.extend(same_names(&model));
+        if errors.is_empty() && model.meets && self.overlaps == Overlaps::Push {
+            crate::stage::push_apart(&model, &mut state);
+        }
         errors.extend(overlaps(&model, &state));
         errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && !self.force).map(
             |critical| BuildError::Unstable {
@@ -286,19 +306,28 @@ impl WorldBuilder {
         model: &Model,
         name: String,
         body: &Body,
-        solids: &mut Solids,
+        shared: &mut Shared,
     ) -> Result<(BodyModel, BodyState), BuildError> {
-        let body_model = self.body_model(name, body, solids)?;
+        let body_model = self.body_model(name, body, shared)?;
         let body_state = body_state(&body_model, body)?;
         check_inside(model, &body_model, &body_state)?;
         Ok((body_model, body_state))
+    }
+
+    /// The materials of all that a body may touch, walls first.
+    fn materials(&self, body: &Body) -> (Vec<Material>, Option<Material>) {
+        let wall = |(_, wall): &(_, MaterialOverride)| self.material.between(*wall, body.material);
+        // what other bodies bring along is not known yet
+        let meets = body.surface != Surface::None;
+        let own = meets.then(|| body.material.over(self.material));
+        (self.walls.iter().map(wall).collect(), own)
     }
 
     fn body_model(
         &self,
         name: String,
         body: &Body,
-        solids: &mut Solids,
+        shared: &mut Shared,
     ) -> Result<BodyModel, BuildError> {
         if let Some((quantity, value, allowed)) = check_body(body) {
             return Err(BuildError::Body { body: name, quantity, value, allowed });
@@ -309,7 +338,7 @@ impl WorldBuilder {
                 ("particle_mass", mass, mass * body.shape.particles().len() as f64)
             }
         };
-        let solid = solids.of(&name, &body.shape, body.surface)?;
+        let solid = shared.solids.of(&name, &body.shape, body.surface)?;
         let inertia = body.shape.gyration() * mass;
         let inverse_inertia = body.shape.principal().inverse() * (1.0 / mass);
         let fits = inertia.is_finite() && inverse_inertia.is_finite();
@@ -326,22 +355,32 @@ impl WorldBuilder {
             (body.motion == Motion::Free, matches!(body.surface, Surface::Spheres { .. }));
         // a body of spheres touches with one of them at a time
         let particle_mass = if has_spheres { mass } else { mass / body.shape.moments().count };
-        let contact = |(_, wall): &(_, MaterialOverride)| {
-            self.material.between(*wall, body.material).law(particle_mass)
+        let (walls, own) = self.materials(body);
+        let per_area = |material: &Material| material.collision_stiffness_per_area;
+        let shape = match walls.iter().chain(&own).find_map(per_area) {
+            Some(stiffness) => shared.twins.of(&body.shape).map_err(|error| BuildError::Body {
+                body: name.clone(),
+                quantity: "collision_stiffness_per_area",
+                value: stiffness.to_string(),
+                allowed: error.allowed(),
+            })?,
+            None => Arc::clone(&body.shape),
         };
-        let contacts: Vec<_> = self.walls.iter().map(contact).collect();
+        let area = shape.mean_area().unwrap_or_default();
+        let law = |material: Material| material.at_area(area).law(particle_mass);
+        let contacts: Vec<_> = walls.into_iter().map(law).collect();
         let moments = body.shape.principal().moments * mass;
         let inverse_moments = moments.to_array().map(|m| if m > 0.0 { 1.0 / m } else { 0.0 });
         Ok(BodyModel {
             name,
-            shape: Arc::clone(&body.shape),
+            shape,
             mass,
             inertia,
             inverse_inertia,
             inverse_moments: DVec3::from_array(inverse_moments),
             drag_modes: DragModes::of(&body.shape, mass),
             pair_material: PairMaterial::new(
-                &body.material.over(self.material),
+                &body.material.over(self.material).at_area(area),
                 if is_free { 1.0 / mass } else { 0.0 },
                 if has_spheres { 1.0 } else { body.shape.moments().count },
             ),
@@ -417,6 +456,9 @@ fn check_material(
         check(name, value >= 0.0 && value.is_finite(), &value, allowed);
     };
     number("collision_stiffness", material.collision_stiffness, "a number of N/m, 0 or more");
+    if let Some(stiffness) = material.collision_stiffness_per_area {
+        number("collision_stiffness_per_area", stiffness, "a number of N/m³, 0 or more");
+    }
     number("friction_stiffness", material.friction_stiffness, "a number, 0 or more");
     if let Some(spring) = material.friction_spring {
         number("friction_spring", spring, "a number of N/m, 0 or more");

@@ -70,13 +70,13 @@ pub use pair_law::{PairDamping, PairMaterial};
 pub use restore::StateError;
 pub use scratch::{BodyForces, Scratch, Wrench};
 pub use shape::{
-    BallsError, Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties, Mesh,
-    MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError, PrincipalAxes,
-    SampleError, Sampling, Shape, ShapeError, ShellError, ball_integrals,
+    AreaError, BallsError, Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties,
+    Mesh, MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError,
+    PrincipalAxes, SampleError, Sampling, Shape, ShapeError, ShellError, ball_integrals,
 };
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::Pull;
 pub use state::{BodyState, ContactKind, FrictionSpring, PairSpring, State, Tally};
-pub use surface::Surface;
+pub use surface::{Overlaps, Surface};
 pub use wall::{WallBox, WallPlane};
 pub use world::{BodyView, World};

@@ -16,6 +16,10 @@ pub enum Damping {
 pub struct Material {
     /// Stiffness k of a particle's contact spring (N/m).
     pub collision_stiffness: f64,
+    /// Stiffness κ of a surface (N/m³), instead of k where it is given: a particle has k = κ A, A its share of
+    /// the body's surface, so that how a body bounces does not depend on how finely it is sampled. All else
+    /// that is said per particle is then said of a particle of mean area, and scales with A.
+    pub collision_stiffness_per_area: Option<f64>,
     /// Its dashpot.
     pub damping: Damping,
     /// Coulomb coefficient of friction μ.
@@ -31,6 +35,7 @@ impl Default for Material {
     fn default() -> Self {
         Self {
             collision_stiffness: 1e4,
+            collision_stiffness_per_area: None,
             damping: Damping::Dashpot(0.0),
             friction_stiffness: 0.0,
             friction_spring: None,
@@ -42,8 +47,10 @@ impl Default for Material {
 /// What a wall or a body says about its own contacts; the rest comes from the world's material.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MaterialOverride {
-    /// See [`Material::collision_stiffness`].
+    /// See [`Material::collision_stiffness`]; takes the place of a stiffness per area of the rest.
     pub collision_stiffness: Option<f64>,
+    /// See [`Material::collision_stiffness_per_area`]; heard before `collision_stiffness` if both are given.
+    pub collision_stiffness_per_area: Option<f64>,
     /// See [`Material::damping`].
     pub damping: Option<Damping>,
     /// See [`Material::friction_stiffness`].
@@ -57,8 +64,15 @@ pub struct MaterialOverride {
 impl MaterialOverride {
     /// These values over a material that says the rest.
     pub fn over(self, rest: Material) -> Material {
+        let per_area = self.collision_stiffness_per_area;
+        let says_stiffness = per_area.is_some() || self.collision_stiffness.is_some();
         Material {
             collision_stiffness: self.collision_stiffness.unwrap_or(rest.collision_stiffness),
+            collision_stiffness_per_area: if says_stiffness {
+                per_area
+            } else {
+                rest.collision_stiffness_per_area
+            },
             damping: self.damping.unwrap_or(rest.damping),
             friction_stiffness: self.friction_stiffness.unwrap_or(rest.friction_stiffness),
             friction_spring: self.friction_spring.or(rest.friction_spring),
@@ -71,7 +85,11 @@ impl From<Material> for MaterialOverride {
     /// One that says everything that the material says.
     fn from(material: Material) -> Self {
         Self {
-            collision_stiffness: Some(material.collision_stiffness),
+            collision_stiffness: match material.collision_stiffness_per_area {
+                Some(_) => None,
+                None => Some(material.collision_stiffness),
+            },
+            collision_stiffness_per_area: material.collision_stiffness_per_area,
             damping: Some(material.damping),
             friction_stiffness: Some(material.friction_stiffness),
             friction_spring: material.friction_spring,
@@ -87,7 +105,21 @@ impl Material {
         wall.over(body.over(self))
     }
 
-    /// The law of contact for particles of `mass` m (kg).
+    /// The material of particles that share a surface of `area` (m²) each, at the mean: a stiffness per area
+    /// becomes one per particle.
+    pub fn at_area(self, area: f64) -> Self {
+        match self.collision_stiffness_per_area {
+            Some(stiffness) => Self {
+                collision_stiffness: stiffness * area,
+                collision_stiffness_per_area: None,
+                ..self
+            },
+            None => self,
+        }
+    }
+
+    /// The law of contact for particles of `mass` m (kg). Of a material with a stiffness per area,
+    /// [`Material::at_area`] is to be taken first.
     pub fn law(&self, mass: f64) -> ContactLaw {
         let k = self.collision_stiffness;
         let friction_spring = self.friction_spring.unwrap_or(2.0 / 7.0 * k);
@@ -104,7 +136,9 @@ impl Material {
     }
 }
 
-/// The law of contact between the particles of one body and one wall.
+/// The law of contact between the particles of one body and one wall. Where they have weights
+/// ([`Particles::weight`](crate::Particles::weight)) it is the law of one that weighs 1, and all forces of a particle
+/// are multiplied by its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw {
     /// Normal spring k (N/m).

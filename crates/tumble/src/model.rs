@@ -59,7 +59,7 @@ pub struct Model {
 pub struct BodyModel {
     /// Its name.
     pub name: String,
-    /// Its particles and mass distribution.
+    /// Its particles and mass distribution; with weights where any of its contacts is stiff per area.
     pub shape: Arc<Shape>,
     /// Mass M (kg).
     pub mass: f64,
@@ -91,7 +91,12 @@ pub struct BodyModel {
 
 impl BodyModel {
     /// Line 7: ω = R I₀⁻¹ Rᵀ L, with `rotation` = R (rad/s, world axes).
+    #[inline]
     pub fn angular_velocity(&self, rotation: DMat3, angular_momentum: DVec3) -> DVec3 {
+        let inverse = self.inverse_moments;
+        if inverse.x == inverse.y && inverse.y == inverse.z {
+            return angular_momentum * inverse.x;
+        }
         rotation * (self.inverse_inertia * (rotation.transpose() * angular_momentum))
     }
 

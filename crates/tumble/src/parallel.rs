@@ -33,6 +33,38 @@ pub(crate) fn each_of_two<T: Send, U: Send>(
     }
 }
 
+/// Calls `work` with the index of the first body of each chunk, the chunk of two kinds of items, one of which belongs to
+/// each body, and the room of the chunk.
+pub(crate) fn each_body_of_two<T: Send, U: Send, R: Send>(
+    items: &mut [T],
+    others: &mut [U],
+    rooms: &mut [R],
+    work: impl Fn(usize, &mut [T], &mut [U], &mut R) + Sync,
+) {
+    if let [room] = rooms {
+        return work(0, items, others, room);
+    }
+    let both = items.par_chunks_mut(CHUNK).zip(others.par_chunks_mut(CHUNK)).zip(rooms);
+    both.enumerate().for_each(|(index, ((items, others), room))| {
+        work(index * CHUNK, items, others, room);
+    });
+}
+
+/// What `look` finds at the first body at which it finds anything.
+pub(crate) fn first_body<T: Send>(
+    body_count: usize,
+    look: impl Fn(usize) -> Option<T> + Sync,
+) -> Option<T> {
+    if body_count <= CHUNK {
+        return (0..body_count).find_map(look);
+    }
+    let chunks = (0..body_count.div_ceil(CHUNK)).into_par_iter();
+    chunks.find_map_first(|index| {
+        let first = index * CHUNK;
+        (first..body_count.min(first + CHUNK)).find_map(&look)
+    })
+}
+
 /// Calls `work` with every body and its index, and adds up what it returns.
 pub(crate) fn tally_bodies(
     tally: &mut Tally,

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::FrictionSpring;
+use crate::parallel::CHUNK;
 use crate::stage::{Meeting, Touching};
 
 /// Room for what is derived within a step. Dropping it between steps changes no result.
@@ -14,8 +15,8 @@ pub struct Scratch {
     pub forces: Vec<BodyForces>,
     /// The friction springs that go on from this evaluation, one list a body.
     pub springs: Vec<Vec<FrictionSpring>>,
-    /// Particles of one body in contact, while they are looked at.
-    pub(crate) touching: Touching,
+    /// Particles of one body in contact, while they are looked at; one entry a chunk of bodies.
+    pub(crate) touching: Vec<Touching>,
     /// Contacts between bodies.
     pub(crate) meeting: Meeting,
     /// Friction springs of one body to go back to.
@@ -30,6 +31,7 @@ impl Scratch {
             self.forces.resize(body_count, BodyForces::default());
             self.springs.resize_with(body_count, Vec::new);
             self.near.resize(body_count, true);
+            self.touching.resize_with(body_count.div_ceil(CHUNK), Touching::default);
         }
     }
 }

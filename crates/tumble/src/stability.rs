@@ -20,12 +20,16 @@ pub struct CriticalStep {
 /// dashpot of damping ratio ζ the bound is (2/ω)(√(1 + ζ²) − ζ). However many particles of a body are in
 /// contact, its stiffness over its mass is no more than that of one of them, and so is its rotational
 /// stiffness over its inertia; with mass spread otherwise the largest ratio over all motions takes the place
-/// of 1/m. Where bodies meet each other, two of a kind count, with all their particles. Walls that meet in a corner add up; of two that face each other the stiffer counts.
+/// of 1/m. So it does where particles are weighted by their areas, with the weights counted: the ratio of
+/// translation is still k/m of the mean particle, that of rotation may be more. Where bodies meet each other, two of a
+/// kind count, with all their particles. Walls that meet in a corner add up; of two that face each other the stiffer
+/// counts.
 pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
     let of_body = |body: &BodyModel| {
-        let per_mass = match &body.drag_modes {
-            Some(modes) => modes.fastest(),
-            None => 1.0 / body.particle_mass(),
+        let per_mass = match (body.shape.fastest_contact(), &body.drag_modes) {
+            (Some(fastest), _) => fastest / body.mass,
+            (None, Some(modes)) => modes.fastest(),
+            (None, None) => 1.0 / body.particle_mass(),
         };
         let sum = |normal: fn(&ContactLaw) -> f64, tangential: fn(&ContactLaw) -> f64| {
             stiffest(&model.walls, &body.contacts, normal, tangential) * per_mass

@@ -20,6 +20,16 @@ pub enum Surface {
     },
 }
 
+/// What is done about bodies that start in each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Overlaps {
+    /// They are refused, by name.
+    #[default]
+    Refuse,
+    /// They are moved apart before the first step, without turning or kicking them.
+    Push,
+}
+
 /// The distances to meshes, made once for all bodies of one shape.
 #[derive(Debug, Default)]
 pub(crate) struct Solids(BTreeMap<*const Shape, Result<Arc<SignedDistance>, SurfaceError>>);

@@ -129,6 +129,7 @@ fn material() -> impl Strategy<Value = Material> {
     )
         .prop_map(|(k, damping, friction, spring, brake)| Material {
             collision_stiffness: k,
+            collision_stiffness_per_area: None,
             damping,
             friction_stiffness: friction,
             friction_spring: spring,

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used)]
 
 use tumble::{
-    Body, DQuat, DVec3, Damping, Integrator, MassModel, Material, Mesh, Motion, Prescribed,
-    Primitive, Sampling, Shape, Surface, WallPlane, World, WorldBuilder,
+    Body, DQuat, DVec3, Damping, Integrator, MassModel, Material, Mesh, Motion, Overlaps,
+    Prescribed, Primitive, Sampling, Shape, Surface, WallPlane, World, WorldBuilder,
 };
 
 fn ball(radius: f64) -> Shape {
@@ -212,4 +212,59 @@ fn a_static_box_is_a_wall() {
         println!("{e} {friction} {apart:e}");
         assert!(apart < bound, "e = {e}, μ = {friction}: {apart:e}");
     }
+}
+
+fn nested() -> WorldBuilder {
+    let cube = Primitive::Box { size: DVec3::splat(0.2), divisions: 4 };
+    let shape = std::sync::Arc::new(solid(cube));
+    let body = |name: &str, x: f64| {
+        let body = Body::new(shape.clone()).name(name).mass(1.0).surface(Surface::Mesh);
+        body.position(DVec3::new(x, 0.0, 0.0))
+    };
+    space().dt(1e-4).body(body("left", 0.0)).body(body("right", 0.12)).body(body("far", 0.5))
+}
+
+#[test]
+fn bodies_that_start_in_each_other_are_refused_by_name() {
+    let errors = nested().build().unwrap_err();
+    let text = errors.to_string();
+    assert!(text.contains("\"left\" and \"right\" start"), "{text}");
+    assert!(!text.contains("far"), "{text}");
+}
+
+#[test]
+fn bodies_that_start_in_each_other_are_moved_apart_when_asked() {
+    let mut world = nested().overlaps(Overlaps::Push).build().unwrap();
+    let apart = world.body(1).position().x - world.body(0).position().x;
+    assert!((0.199..0.21).contains(&apart), "{apart}");
+    assert_eq!(world.body(2).position(), DVec3::new(0.5, 0.0, 0.0));
+    world.step().unwrap();
+    assert!(world.body(0).velocity().length() < 0.1);
+}
+
+#[test]
+fn bodies_that_could_pass_through_each_other_are_named() {
+    let plate = Primitive::Box { size: DVec3::new(1.0, 0.02, 1.0), divisions: 2 };
+    let fall = |dt: f64| {
+        let plate = Body::new(solid(plate)).name("plate").surface(Surface::Mesh);
+        let stone = Body::new(ball(0.005)).name("stone").mass(0.001);
+        let mut world = space()
+            .dt(dt)
+            .force(true)
+            .material(material(1e6, Damping::Restitution(0.5), 0.0))
+            .body(plate.motion(Motion::Prescribed(Prescribed::default())))
+            .body(stone.position(DVec3::new(0.1, 0.3, 0.2)).velocity(DVec3::NEG_Y * 100.0))
+            .build()
+            .unwrap();
+        while world.time() < 0.01 {
+            world.step()?;
+        }
+        Ok(world.body(1).position().y)
+    };
+    let error: tumble::StepError = fall(5e-4).unwrap_err();
+    assert_eq!((error.body.as_str(), error.other.as_deref()), ("stone", Some("plate")));
+    let text = error.to_string();
+    assert!(text.contains("through which it could pass"), "{text}");
+    // the step that it names is one that will do
+    assert!(fall(error.dt.unwrap()).unwrap() > 0.0);
 }

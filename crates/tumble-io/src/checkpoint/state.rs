@@ -1,19 +1,29 @@
 //! The state as bytes: step, time, number of bodies; position, velocity, orientation (w, x, y, z),
 //! its rest, angular momentum and energy owed of each; number of friction springs of each, and wall, particle
-//! anchor and stretch of each spring; the tally.
+//! anchor and stretch of each spring; number of springs between bodies, and first, second, kind (a byte), particle,
+//! other and stretch of each; the tally.
 
-use tumble::{BodyState, DQuat, DVec3, FrictionSpring, State, Tally};
+use tumble::{BodyState, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, State, Tally};
 
 use super::Bytes;
 
 const BODY: usize = 18 * 8;
 const SPRING: usize = 4 + 4 + 6 * 8;
+const PAIR: usize = 4 * 4 + 1 + 3 * 8;
+/// The kinds of contact by their bytes.
+const KINDS: [ContactKind; 4] = [
+    ContactKind::Wall,
+    ContactKind::Spheres,
+    ContactKind::FirstInSecond,
+    ContactKind::SecondInFirst,
+];
 
 pub(super) fn bytes(state: &State) -> Vec<u8> {
     // taken apart to the last field: one that is added later cannot be forgotten here
-    let State { step, time, bodies, springs, tally, .. } = state;
+    let State { step, time, bodies, springs, pair_springs, tally } = state;
     let spring_count: usize = springs.iter().map(Vec::len).sum();
-    let mut out = Vec::with_capacity(64 + bodies.len() * (BODY + 8) + spring_count * SPRING);
+    let counted = spring_count * SPRING + pair_springs.len() * PAIR;
+    let mut out = Vec::with_capacity(80 + bodies.len() * (BODY + 8) + counted);
     out.extend(step.to_le_bytes());
     put(&mut out, [*time]);
     out.extend((bodies.len() as u64).to_le_bytes());
@@ -43,8 +53,17 @@ pub(super) fn bytes(state: &State) -> Vec<u8> {
             put(&mut out, stretch.to_array());
         }
     }
-    let Tally { drag, dashpot, slip, max_depth, evaluations, .. } = *tally;
-    put(&mut out, [drag, dashpot, slip, max_depth]);
+    out.extend((pair_springs.len() as u64).to_le_bytes());
+    for PairSpring { first, second, kind, particle, other, stretch } in pair_springs {
+        out.extend(first.to_le_bytes());
+        out.extend(second.to_le_bytes());
+        out.push(*kind as u8);
+        out.extend(particle.to_le_bytes());
+        out.extend(other.to_le_bytes());
+        put(&mut out, stretch.to_array());
+    }
+    let Tally { drag, dashpot, slip, work, max_depth, evaluations } = *tally;
+    put(&mut out, [drag, dashpot, slip, work, max_depth]);
     out.extend(evaluations.to_le_bytes());
     out
 }
@@ -59,15 +78,15 @@ pub(super) fn parse(mut from: Bytes) -> Option<State> {
     let count = from.count(BODY + 8)?;
     let bodies = (0..count).map(|_| body(&mut from)).collect::<Option<_>>()?;
     let springs = (0..count).map(|_| springs(&mut from)).collect::<Option<_>>()?;
+    let pair_springs = pair_springs(&mut from)?;
     let tally = Tally {
         drag: from.f64()?,
         dashpot: from.f64()?,
         slip: from.f64()?,
+        work: from.f64()?,
         max_depth: from.f64()?,
         evaluations: from.u64()?,
-        ..Tally::default()
     };
-    let pair_springs = Vec::new();
     from.is_empty().then_some(State { step, time, bodies, springs, pair_springs, tally })
 }
 
@@ -87,6 +106,21 @@ fn springs(from: &mut Bytes) -> Option<Vec<FrictionSpring>> {
     let spring = |_| {
         let (wall, particle) = (from.u32()?, from.u32()?);
         Some(FrictionSpring { wall, particle, anchor: vector(from)?, stretch: vector(from)? })
+    };
+    (0..count).map(spring).collect()
+}
+
+fn pair_springs(from: &mut Bytes) -> Option<Vec<PairSpring>> {
+    let count = from.count(PAIR)?;
+    let spring = |_| {
+        Some(PairSpring {
+            first: from.u32()?,
+            second: from.u32()?,
+            kind: *KINDS.get(usize::from(from.take(1)?[0]))?,
+            particle: from.u32()?,
+            other: from.u32()?,
+            stretch: vector(from)?,
+        })
     };
     (0..count).map(spring).collect()
 }

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use tumble::{DQuat, DVec3};
 
 use super::glb_buffer::{Arrays, VERTICES};
-use super::stage::{Form, Stage, linear_colour, steady, too_far, upright};
+use super::stage::{Form, Stage, steady, too_far, upright};
 use super::{ExportError, Exported, Job, Watch, tell};
 use crate::replay::ReplayFrame;
 
@@ -158,9 +158,9 @@ struct Meshes {
     /// The primitive of each shape, without a material.
     primitives: Vec<Value>,
     /// The mesh of each shape and colour.
-    made: HashMap<(usize, [u32; 3]), usize>,
+    made: HashMap<(usize, [u32; 4]), usize>,
     /// The material of each colour.
-    colours: HashMap<[u32; 3], usize>,
+    colours: HashMap<[u32; 4], usize>,
     meshes: Vec<Value>,
     materials: Vec<Value>,
 }
@@ -175,16 +175,19 @@ impl Meshes {
     }
 
     fn of_body(&mut self, stage: &Stage, body: usize) -> usize {
-        let colour = linear_colour(body);
+        let colour = stage.colours[body];
         let key = colour.map(f32::to_bits);
         let material = *self.colours.entry(key).or_insert_with(|| {
-            let [r, g, b] = colour;
-            self.materials.push(json!({
+            let mut material = json!({
                 "pbrMetallicRoughness": {
-                    "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": 0.5,
+                    "baseColorFactor": colour, "metallicFactor": 0.0, "roughnessFactor": 0.5,
                 },
                 "doubleSided": true,
-            }));
+            });
+            if colour[3] < 1.0 {
+                material["alphaMode"] = json!("BLEND");
+            }
+            self.materials.push(material);
             self.materials.len() - 1
         });
         let form = stage.form_of[body];

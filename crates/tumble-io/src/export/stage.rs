@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use glam::Vec3;
-use tumble::{DQuat, DVec3, Shape};
+use tumble::{BodyModel, DQuat, DVec3};
 
 use super::{ExportError, Job};
+use crate::looks::{DRIVEN, is_driven, surface_of};
 use crate::picture::{Boundary, colour, corner_normals};
 use crate::replay::{Replay, ReplayFrame};
 use crate::run::boundary;
@@ -16,6 +17,8 @@ pub(super) struct Stage {
     pub forms: Vec<Form>,
     /// Which of the shapes each body has.
     pub form_of: Vec<usize>,
+    /// The colour of each body as light, and how much it hides of what is behind it, from 0 to 1.
+    pub colours: Vec<[f32; 4]>,
     /// The corners (m) of finite pieces of all walls, counter-clockwise seen from the free side.
     pub walls: Vec<[DVec3; 4]>,
 }
@@ -34,16 +37,17 @@ impl Stage {
     /// # Errors
     /// [`ExportError::Unfit`] where single precision cannot hold a place.
     pub fn new(job: &Job) -> Result<Self, ExportError> {
-        let mut shapes: Vec<&Arc<Shape>> = Vec::new();
-        let form_of = job.replay.world.bodies().map(|body| {
-            let own = &body.model().shape;
-            shapes.iter().position(|shape| Arc::ptr_eq(shape, own)).unwrap_or_else(|| {
-                shapes.push(own);
-                shapes.len() - 1
+        let mut shown: Vec<&BodyModel> = Vec::new();
+        let models = job.replay.world.model().bodies.iter();
+        let form_of = models.map(|own| {
+            let is_same = |body: &&BodyModel| Arc::ptr_eq(&body.shape, &own.shape);
+            shown.iter().position(is_same).unwrap_or_else(|| {
+                shown.push(own);
+                shown.len() - 1
             })
         });
         let form_of = form_of.collect();
-        let forms: Vec<Form> = shapes.iter().map(|shape| Form::new(shape)).collect();
+        let forms: Vec<Form> = shown.iter().map(|body| Form::new(body)).collect();
         let bounds = Bounds::of(job.replay, job.chosen.span);
         let walls = boundary(&job.replay.scene);
         let walls: Vec<[DVec3; 4]> = walls.iter().flat_map(|part| pieces(part, &bounds)).collect();
@@ -52,7 +56,8 @@ impl Stage {
         if !points.chain([&(bounds.centre + bounds.radius)]).all(is_held) {
             return Err(too_far());
         }
-        Ok(Self { forms, form_of, walls })
+        let colours = job.replay.world.model().bodies.iter().enumerate().map(linear_colour);
+        Ok(Self { forms, form_of, colours: colours.collect(), walls })
     }
 }
 
@@ -65,8 +70,8 @@ pub(super) fn too_far() -> ExportError {
 }
 
 impl Form {
-    fn new(shape: &Shape) -> Self {
-        let surface = shape.surface();
+    fn new(body: &BodyModel) -> Self {
+        let surface = surface_of(body);
         let farthest = surface.vertices.iter().fold(0.0f64, |far, v| far.max(v.length()));
         let normals = corner_normals(&surface.vertices, &surface.triangles, farthest);
         let with_area = |normals: &[Vec3; 3]| normals.iter().all(|n| n.length() > 0.5);
@@ -74,19 +79,23 @@ impl Form {
         let (triangles, normals): (Vec<_>, Vec<_>) =
             pairs.filter(|(_, normals)| with_area(normals)).unzip();
         if triangles.is_empty() {
-            let points = shape.particles().iter().collect();
+            let points = body.shape.particles().iter().collect();
             return Self { points, triangles, normals };
         }
-        Self { points: surface.vertices.clone(), triangles, normals }
+        Self { points: surface.into_owned().vertices, triangles, normals }
     }
 }
 
-/// The colour of a body as light, not as it is stored in pictures: red, green, blue from 0 to 1.
-pub(super) fn linear_colour(body: usize) -> [f32; 3] {
-    colour(body).map(|byte| {
+/// The colour of a body as light, not as it is stored in pictures: red, green, blue and opacity from 0 to 1.
+fn linear_colour((index, body): (usize, &BodyModel)) -> [f32; 4] {
+    let is_driven = is_driven(body);
+    let stored = if is_driven { DRIVEN } else { colour(index) };
+    let [r, g, b] = stored.map(|byte| {
         let stored = byte / 255.0;
         if stored <= 0.04045 { stored / 12.92 } else { libm::powf((stored + 0.055) / 1.055, 2.4) }
-    })
+    });
+    // what stands around the others must not hide them
+    [r, g, b, if is_driven { 0.35 } else { 1.0 }]
 }
 
 /// Turns the direction against gravity to `up`.

@@ -11,7 +11,7 @@ use glam::Vec3;
 use tumble::{DQuat, DVec3};
 
 use super::draft::Draft;
-use super::stage::{Form, Stage, linear_colour, steady, upright};
+use super::stage::{Form, Stage, steady, upright};
 use super::{ExportError, Exported, Job, Watch, tell};
 
 pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
@@ -30,13 +30,13 @@ pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportErro
     header(&mut out, job, up, rate).map_err(failed)?;
     shapes(&mut out, &stage).map_err(failed)?;
     let bodies = job.replay.world.bodies();
-    let colours = materials(&mut out, bodies.len()).map_err(failed)?;
+    let colours = materials(&mut out, &stage).map_err(failed)?;
     let mut names = HashSet::from(["Shapes".to_owned(), "Materials".to_owned()]);
     let count = bodies.len();
     for (index, body) in bodies.enumerate() {
         tell(watch, index, count)?;
         let name = (identifier(body.name(), &mut names), body.name());
-        let looks = (stage.form_of[index], colours[index]);
+        let looks = (stage.form_of[index], colours[index], stage.colours[index]);
         write_body(&mut out, job, (index, looks), name, rate).map_err(failed)?;
     }
     if !stage.walls.is_empty() {
@@ -85,25 +85,28 @@ fn shapes(out: &mut Draft, stage: &Stage) -> io::Result<()> {
 
 /// A material for each colour of the bodies, for renderers that do not heed `displayColor`; returns
 /// which one each body has.
-fn materials(out: &mut Draft, count: usize) -> io::Result<Vec<usize>> {
-    let mut made: Vec<[f32; 3]> = Vec::new();
-    let of_body = (0..count).map(|body| {
-        let colour = linear_colour(body);
-        made.iter().position(|other| *other == colour).unwrap_or_else(|| {
-            made.push(colour);
+fn materials(out: &mut Draft, stage: &Stage) -> io::Result<Vec<usize>> {
+    let mut made: Vec<[f32; 4]> = Vec::new();
+    let of_body = stage.colours.iter().map(|colour| {
+        made.iter().position(|other| other == colour).unwrap_or_else(|| {
+            made.push(*colour);
             made.len() - 1
         })
     });
     let of_body = of_body.collect();
     writeln!(out, "    def Scope \"Materials\"\n    {{")?;
-    for (index, [r, g, b]) in made.iter().enumerate() {
+    for (index, [r, g, b, opacity]) in made.iter().enumerate() {
         let material = format!("Colour_{index}");
+        let opacity = match *opacity {
+            1.0 => String::new(),
+            part => format!("                float inputs:opacity = {part}\n"),
+        };
         writeln!(
             out,
             "        def Material \"{material}\"\n        {{\n            token outputs:surface.connect = \
              </World/Materials/{material}/surface.outputs:surface>\n\n            def Shader \"surface\"\n            \
              {{\n                uniform token info:id = \"UsdPreviewSurface\"\n                \
-             color3f inputs:diffuseColor = ({r}, {g}, {b})\n                float inputs:roughness = 0.5\n                \
+             color3f inputs:diffuseColor = ({r}, {g}, {b})\n{opacity}                float inputs:roughness = 0.5\n                \
              token outputs:surface\n            }}\n        }}\n",
         )?;
     }
@@ -169,11 +172,11 @@ fn list(
 fn write_body(
     out: &mut Draft,
     job: &Job,
-    (index, (form, material)): (usize, (usize, usize)),
+    (index, (form, material, colour)): (usize, (usize, usize, [f32; 4])),
     (prim, name): (String, &str),
     rate: f64,
 ) -> io::Result<()> {
-    let [r, g, b] = linear_colour(index);
+    let [r, g, b, _] = colour;
     writeln!(
         out,
         "    def Xform \"{prim}\" (\n        displayName = \"{}\"\n        prepend apiSchemas = \

@@ -7,10 +7,11 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use tumble::{BodyModel, DMat3, DVec3, World};
+use tumble::{BodyModel, DMat3, DVec3, Mesh, World};
 
 use super::draft::{beside, folder_of};
 use super::{ExportError, Exported, Job, Watch, tell};
+use crate::looks::surface_of;
 use crate::replay::{Pose, ReplayFrame};
 
 pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
@@ -115,8 +116,8 @@ struct Cells {
 }
 
 /// Whether the vertices of the surface are the particles.
-fn is_drawn_by_particles(body: &BodyModel) -> bool {
-    let (surface, particles) = (body.shape.surface(), body.shape.particles());
+fn is_drawn_by_particles(body: &BodyModel, surface: &Mesh) -> bool {
+    let particles = body.shape.particles();
     surface.vertices.len() == particles.len()
         && surface
             .vertices
@@ -126,9 +127,9 @@ fn is_drawn_by_particles(body: &BodyModel) -> bool {
 }
 
 /// The points of a body in its own frame: its particles, then vertices that are none.
-fn points(body: &BodyModel) -> impl Iterator<Item = (DVec3, bool)> + '_ {
+fn points<'a>(body: &'a BodyModel, surface: &'a Mesh) -> impl Iterator<Item = (DVec3, bool)> + 'a {
     let only_drawn: &[DVec3] =
-        if is_drawn_by_particles(body) { &[] } else { &body.shape.surface().vertices };
+        if is_drawn_by_particles(body, surface) { &[] } else { &surface.vertices };
     let particles = body.shape.particles().iter().map(|place| (place, true));
     particles.chain(only_drawn.iter().map(|&place| (place, false)))
 }
@@ -140,12 +141,12 @@ impl Cells {
         let (mut body, mut is_particle) = (Vec::new(), Vec::new());
         for (index, model) in world.bodies().map(|body| body.model()).enumerate() {
             let first = is_particle.len();
-            is_particle.extend(points(model).map(|(_, particle)| u8::from(particle)));
+            let surface = surface_of(model);
+            is_particle.extend(points(model, &surface).map(|(_, particle)| u8::from(particle)));
             body.resize(is_particle.len(), index as i32);
             i32::try_from(is_particle.len()).map_err(|_| too_many())?;
-            let surface = model.shape.surface();
             let particles = model.shape.particles().len();
-            let is_same = is_drawn_by_particles(model);
+            let is_same = is_drawn_by_particles(model, &surface);
             let base = if is_same { first } else { first + particles } as i32;
             triangles
                 .extend(surface.triangles.iter().flatten().map(|&corner| base + corner as i32));
@@ -164,7 +165,7 @@ fn write_frame(path: &Path, world: &World, cells: &Cells, frame: &ReplayFrame) -
     let (mut places, mut velocities, mut forces) = (Vec::new(), Vec::new(), Vec::new());
     for (body, pose) in world.bodies().zip(&frame.poses) {
         let turn = DMat3::from_quat(pose.orientation);
-        for (place, is_particle) in points(body.model()) {
+        for (place, is_particle) in points(body.model(), &surface_of(body.model())) {
             let (arm, model) = (turn * place, body.model());
             let force = if is_particle {
                 spring_force(world, model, pose.position + arm)

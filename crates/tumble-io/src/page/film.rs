@@ -57,8 +57,9 @@ pub fn encode_frame(
     row: &EnergyRow,
     bodies: impl Iterator<Item = BodyFrame>,
 ) {
-    let EnergyRow { time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual } =
-        *row;
+    // the page finds the work from the rest: the sum of the parts less the total
+    let EnergyRow { time, kinetic, gravitational, elastic, drag, .. } = *row;
+    let EnergyRow { dashpot, slip, work: _, total, residual, .. } = *row;
     let ledger = [kinetic, gravitational, elastic, drag, dashpot, slip, total, residual];
     for number in [time, step as f64].into_iter().chain(ledger) {
         out.extend(number.to_le_bytes());

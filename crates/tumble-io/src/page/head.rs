@@ -6,8 +6,9 @@ use std::sync::Arc;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
-use tumble::{BodyView, DQuat, DVec3, Shape, WallBox, World};
+use tumble::{BodyModel, BodyView, DQuat, DVec3, Shape, WallBox, World};
 
+use crate::looks::{is_driven, particle_radius, surface_of};
 use crate::scene::Scene;
 
 /// All that is constant during a run, as the page reads it.
@@ -67,6 +68,8 @@ struct ShapeHead {
     /// Nothing where the particles are the vertices, in their order.
     particles: Option<String>,
     particle_count: usize,
+    /// Of the spheres about the particles (m); nothing where there are none.
+    particle_radius: Option<f64>,
     radius: f64,
     /// Σ rᵢ (m) and Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) (m²), by rows: what the force of drag needs.
     first: [f64; 3],
@@ -79,6 +82,8 @@ struct BodyHead {
     shape: usize,
     mass: f64,
     particle_mass: f64,
+    /// Whether something other than forces moves it.
+    driven: bool,
     moments: [f64; 3],
     axes: [f64; 4],
 }
@@ -150,7 +155,7 @@ fn shapes(world: &World) -> (Vec<ShapeHead>, Vec<usize>) {
     let shape_of = world.bodies().map(|body| {
         let shape = &body.model().shape;
         *known.entry(Arc::as_ptr(shape)).or_insert_with(|| {
-            heads.push(of_shape(shape));
+            heads.push(of_shape(body.model()));
             heads.len() - 1
         })
     });
@@ -158,8 +163,9 @@ fn shapes(world: &World) -> (Vec<ShapeHead>, Vec<usize>) {
     (heads, shape_of)
 }
 
-fn of_shape(shape: &Shape) -> ShapeHead {
-    let surface = shape.surface();
+fn of_shape(body: &BodyModel) -> ShapeHead {
+    let (shape, surface) = (&body.shape, surface_of(body));
+    let particle_radius = particle_radius(body);
     let particles: Vec<DVec3> = shape.particles().iter().collect();
     let bare = surface.vertices.is_empty();
     let vertices = if bare { &particles } else { &surface.vertices };
@@ -170,7 +176,8 @@ fn of_shape(shape: &Shape) -> ShapeHead {
         triangles: STANDARD.encode(triangles.collect::<Vec<u8>>()),
         particles: (!same).then(|| points(&particles)),
         particle_count: particles.len(),
-        radius: shape.radius(),
+        particle_radius,
+        radius: shape.radius() + particle_radius.unwrap_or(0.0),
         first: shape.moments().first.to_array(),
         // symmetric: columns are rows
         second: shape.moments().second.to_cols_array(),
@@ -190,6 +197,7 @@ fn of_body(body: &BodyView, shape: usize) -> BodyHead {
         shape,
         mass: model.mass,
         particle_mass: model.particle_mass(),
+        driven: is_driven(model),
         moments: (principal.moments * model.mass).to_array(),
         axes: wxyz(DQuat::from_mat3(&principal.axes)),
     }

@@ -7,6 +7,7 @@ use super::legend::Trail;
 use super::raster::Layer;
 use super::surface::{self, Edge, Surface};
 use super::{MotionPicture, View, drawable, legend, moments};
+use crate::looks::DRIVEN;
 use glam::DVec3;
 
 /// Colours that the colour-blind can tell apart (Okabe and Ito 2008), without the black.
@@ -48,6 +49,15 @@ pub(crate) fn colour(body: usize) -> [f32; 3] {
     let round = (body / COLOURS.len()) % 3;
     // further rounds of the same hues are a little darker
     COLOURS[body % COLOURS.len()].map(|c| c * (1.0 - 0.16 * round as f32))
+}
+
+/// How much a driven body hides of what is behind it, out of 255.
+const VEIL: u8 = 96;
+
+/// The colour of a body of a picture.
+pub(super) fn colour_of(picture: &MotionPicture, body: usize) -> [f32; 3] {
+    let is_driven = picture.bodies.get(body).is_some_and(|body| body.is_driven);
+    if is_driven { DRIVEN } else { colour(body) }
 }
 
 /// The bodies at one time, and how they are painted.
@@ -228,7 +238,10 @@ impl<'a> Studio<'a> {
                 let weight = 0.5 * (1.0 - moment.paleness) * (1.0 - moment.paleness);
                 let Some(frame) = self.picture.frames.get(moment.frame) else { continue };
                 for (body, figure) in self.figures.iter().enumerate() {
-                    if let Some(pose) = frame.pose(body) {
+                    // what one sees through lets the light through
+                    if let Some(pose) =
+                        frame.pose(body).filter(|_| !self.picture.bodies[body].is_driven)
+                    {
                         shadow.cast(surface, self.up, &self.camera, figure, &pose, weight);
                     }
                 }
@@ -292,8 +305,14 @@ impl<'a> Studio<'a> {
             for (body, figure) in self.figures.iter().enumerate() {
                 let Some(pose) = frame.pose(body) else { continue };
                 let Moment { paleness, alpha, .. } = *moment;
-                let paint = Paint { colour: colour(body), paleness, alpha };
-                figure.draw(&pose, camera, &light, paint, layer);
+                let colour = colour_of(&self.picture, body);
+                if !self.picture.bodies[body].is_driven {
+                    figure.draw(&pose, camera, &light, Paint { colour, paleness, alpha }, layer);
+                } else if alpha == 255 {
+                    // where it is at last, and so that one sees what is in it
+                    let paint = Paint { colour, paleness, alpha: VEIL };
+                    figure.draw(&pose, camera, &light, paint, thin);
+                }
             }
         }
     }
@@ -330,7 +349,7 @@ impl<'a> Studio<'a> {
             _ => (1.2, 50),
         };
         for (body, path) in self.paths.iter().enumerate() {
-            let [r, g, b] = colour(body).map(|c| (0.88 * c) as u8);
+            let [r, g, b] = colour_of(&self.picture, body).map(|c| (0.88 * c) as u8);
             let shown = path.partition_point(|(frame, _)| *frame <= until);
             let mut last = None;
             for &(_, point) in &path[shown.saturating_sub(most.max(2))..shown] {

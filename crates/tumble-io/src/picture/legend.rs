@@ -1,7 +1,7 @@
 //! Title, times, names and directions: all that is written on a picture.
 
 use super::camera::{Camera, Viewport};
-use super::compose::{Moment, colour};
+use super::compose::{Moment, colour_of};
 use super::figure::PAPER;
 use super::image::Image;
 use super::text::{FAINT, Font, INK, length, time};
@@ -127,7 +127,7 @@ fn names(image: &mut Image, picture: &MotionPicture, m: Margins) -> i32 {
     let left = right - widest - size - size / 2;
     for (body, name) in names.iter().enumerate() {
         let top = m.side + body as i32 * (m.text.height() + size / 3);
-        let rgb = colour(body).map(|c| c as u8);
+        let rgb = colour_of(picture, body).map(|c| c as u8);
         image.fill(left, top + (m.text.height() - size) / 2, (size, size), rgb);
         m.text.write(image, (left + size + size / 2, top), name, INK);
     }
@@ -137,14 +137,19 @@ fn names(image: &mut Image, picture: &MotionPicture, m: Margins) -> i32 {
 /// The colour of a time: of the body if there is one, of the first few side by side if not.
 fn time_colours(picture: &MotionPicture, moment: &Moment) -> Vec<[u8; 3]> {
     let pale = |body: usize| {
-        let full = colour(body);
+        let full = colour_of(picture, body);
         let mix = |c: usize| {
             let paled = full[c] + (PAPER[c] - full[c]) * moment.paleness;
             paled + (PAPER[c] - paled) * (1.0 - f32::from(moment.alpha) / 255.0)
         };
         [mix(0) as u8, mix(1) as u8, mix(2) as u8]
     };
-    (0..picture.bodies.len().clamp(1, 4)).map(pale).collect()
+    let free = (0..picture.bodies.len()).filter(|&body| !picture.bodies[body].is_driven);
+    let mut shown: Vec<_> = free.take(4).map(pale).collect();
+    if shown.is_empty() {
+        shown.push(pale(0));
+    }
+    shown
 }
 
 /// A row of times along the lower edge.

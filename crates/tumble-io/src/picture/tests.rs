@@ -38,7 +38,12 @@ impl Case {
         let bodies: Vec<PictureBody> = self
             .bodies
             .iter()
-            .map(|(vertices, triangles)| PictureBody { name: "body", vertices, triangles })
+            .map(|(vertices, triangles)| PictureBody {
+                name: "body",
+                vertices,
+                triangles,
+                is_driven: false,
+            })
             .collect();
         use_it(&MotionPicture {
             title: self.title,
@@ -267,7 +272,12 @@ proptest! {
             Frame { time, poses: vec![Pose { position, orientation }] }
         };
         let frames: Vec<Frame> = places.iter().map(frame).collect();
-        let bodies = [PictureBody { name: "any", vertices: &vertices, triangles: &triangles }];
+        let bodies = [PictureBody {
+            name: "any",
+            vertices: &vertices,
+            triangles: &triangles,
+            is_driven: false,
+        }];
         let [min, max, normal] = corners;
         let open = [false, false, false, true, false, false];
         let orientation = DQuat::from_xyzw(up.x, up.y, up.z, offset);

@@ -22,7 +22,9 @@ pub struct EnergyRow {
     pub dashpot: f64,
     /// Lost to slip so far (J).
     pub slip: f64,
-    /// The sum that should stay constant (J).
+    /// Put in so far by bodies whose motion is prescribed (J).
+    pub work: f64,
+    /// The sum that should stay constant, less the work (J).
     pub total: f64,
     /// What the sum is off by (J).
     pub residual: f64,
@@ -68,13 +70,15 @@ struct Series {
 const TOTAL: Series = Series { name: "total", colour: RGBColor(0, 0, 0), value: |row| row.total };
 const RESIDUAL: Series =
     Series { name: "residual", colour: RGBColor(90, 90, 90), value: |row| row.residual };
-const PARTS: [Series; 6] = [
+const PARTS: [Series; 7] = [
     Series { name: "kinetic", colour: RGBColor(0, 114, 178), value: |row| row.kinetic },
     Series { name: "gravitational", colour: RGBColor(230, 159, 0), value: |row| row.gravitational },
     Series { name: "elastic", colour: RGBColor(0, 158, 115), value: |row| row.elastic },
     Series { name: "lost to drag", colour: RGBColor(86, 180, 233), value: |row| row.drag },
     Series { name: "lost to dashpots", colour: RGBColor(204, 121, 167), value: |row| row.dashpot },
     Series { name: "lost to slip", colour: RGBColor(213, 94, 0), value: |row| row.slip },
+    // olive, apart from the six others
+    Series { name: "work put in", colour: RGBColor(140, 130, 30), value: |row| row.work },
 ];
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;

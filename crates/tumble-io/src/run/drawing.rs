@@ -1,7 +1,10 @@
 //! From a scene and its frames to what draws them.
 
-use tumble::{DVec3, World};
+use std::borrow::Cow;
 
+use tumble::{DVec3, Mesh, World};
+
+use crate::looks::{is_driven, surface_of};
 use crate::picture::{self, Boundary, MotionPicture, PictureBody, Studio, View, encode_png};
 use crate::scene::Scene;
 
@@ -38,21 +41,23 @@ pub(crate) fn in_studio<T>(
     draw: impl FnOnce(&Studio) -> T,
 ) -> T {
     // bodies without a surface are drawn by their particles
-    let points: Vec<Vec<DVec3>> = world
+    let looks: Vec<(Cow<Mesh>, Vec<DVec3>)> = world
         .bodies()
         .map(|body| {
-            let shape = &body.model().shape;
-            let bare = shape.surface().triangles.is_empty();
-            if bare { shape.particles().iter().collect() } else { Vec::new() }
+            let surface = surface_of(body.model());
+            let bare = surface.triangles.is_empty();
+            let particles = body.model().shape.particles();
+            let points = if bare { particles.iter().collect() } else { Vec::new() };
+            (surface, points)
         })
         .collect();
     let bodies: Vec<_> = world
         .bodies()
-        .zip(&points)
-        .map(|(body, points)| {
-            let surface = body.model().shape.surface();
+        .zip(&looks)
+        .map(|(body, (surface, points))| {
+            let is_driven = is_driven(body.model());
             let vertices = if points.is_empty() { &surface.vertices } else { points };
-            PictureBody { name: body.name(), vertices, triangles: &surface.triangles }
+            PictureBody { name: body.name(), vertices, triangles: &surface.triangles, is_driven }
         })
         .collect();
     let picture = MotionPicture {

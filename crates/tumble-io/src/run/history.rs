@@ -3,7 +3,7 @@
 use tumble::{DQuat, DVec3, World, Wrench};
 
 use super::folder::{CONTACTS, LEDGER, RunFolder, TRAJECTORY};
-use super::ledger::LEDGER_HEADER;
+use super::ledger::ledger_header;
 use super::recorder::Recorder;
 use super::resume::ResumeError;
 use super::rows::{RowError, Rows, parse_contact, parse_ledger, parse_trajectory};
@@ -40,12 +40,14 @@ impl History {
             return Ok(None);
         }
         let mut trajectory = Rows::open(folder.file(TRAJECTORY), TRAJECTORY_HEADER)?;
-        let mut ledger = Rows::open(folder.file(LEDGER), LEDGER_HEADER)?;
+        let has_work = scene.does_work();
+        let parse = |row: String| parse_ledger(&row, has_work).ok_or(());
+        let mut ledger = Rows::open(folder.file(LEDGER), ledger_header(has_work))?;
         let mut contacts = Contacts::open(folder)?;
         let mut recorder = Recorder::new(world.body_count());
         let mut film = Film::new(world.body_count());
         let last = world.state().step;
-        let mut row = ledger.next()?.map(|row| parse_ledger(&row).ok_or(())).transpose();
+        let mut row = ledger.next()?.map(parse).transpose();
         // a run that lost its first rows begins with a later frame
         let first = match row {
             Ok(Some(row)) => (row.time / scene.dt).round() as u64,
@@ -76,7 +78,7 @@ impl History {
             film.record(step, &next, bodies.into_iter());
             step = scene.next_frame(step);
             if step <= last {
-                row = ledger.next()?.map(|row| parse_ledger(&row).ok_or(())).transpose();
+                row = ledger.next()?.map(parse).transpose();
             }
         }
         // of a first frame that is still to come, the row was read but is not kept

@@ -14,7 +14,7 @@ mod summary;
 mod trajectory;
 
 pub use folder::{CHECKPOINT, RunError, RunFolder};
-pub use ledger::{LEDGER_HEADER, ledger_row};
+pub use ledger::{LEDGER_HEADER, ledger_header, ledger_row};
 pub use recorder::Recorder;
 pub use resume::{ResumeError, Resumption};
 pub use rows::RowError;

@@ -9,7 +9,7 @@ use tumble::{State, World};
 use super::drawing::motion_picture;
 use super::folder::{CHECKPOINT, CONTACTS, LEDGER, RunError, RunFolder, TRAJECTORY};
 use super::history::History;
-use super::ledger::{LEDGER_HEADER, ledger_row};
+use super::ledger::{ledger_header, ledger_row};
 use super::recorder::Recorder;
 use super::scribe::{Files, Memory, Moment, Scribe, still};
 use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
@@ -46,8 +46,9 @@ impl<'a> Recording<'a> {
         };
         let files = Files {
             trajectory: begin(TRAJECTORY, TRAJECTORY_HEADER)?,
-            ledger: begin(LEDGER, LEDGER_HEADER)?,
+            ledger: begin(LEDGER, ledger_header(scene.does_work()))?,
             contacts: begin(CONTACTS, CONTACTS_HEADER)?,
+            has_work: scene.does_work(),
         };
         let bodies = world.body_count();
         let memory = Memory { recorder: Recorder::new(bodies), film: Film::new(bodies) };
@@ -78,6 +79,7 @@ impl<'a> Recording<'a> {
             trajectory: open(TRAJECTORY, trajectory)?,
             ledger: open(LEDGER, ledger)?,
             contacts: open(CONTACTS, contacts)?,
+            has_work: scene.does_work(),
         };
         let scribe = Scribe::start(folder, files, Memory { recorder, film }, names(world));
         Ok(Self::of(folder, scribe, scene, start))

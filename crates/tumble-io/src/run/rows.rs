@@ -90,13 +90,26 @@ impl Rows {
     }
 }
 
-/// A row of `energy.csv`.
-pub(crate) fn parse_ledger(row: &str) -> Option<EnergyRow> {
+/// A row of `energy.csv`, with the column `work` or without.
+pub(crate) fn parse_ledger(row: &str, has_work: bool) -> Option<EnergyRow> {
+    let (row, work) = match row.rsplit_once(',') {
+        Some((row, work)) if has_work => (row, work.parse().ok()?),
+        _ => (row, 0.0),
+    };
     let [time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual] =
         numbers::<9>(row)?;
-    let row =
-        EnergyRow { time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual };
-    Some(row)
+    Some(EnergyRow {
+        time,
+        kinetic,
+        gravitational,
+        elastic,
+        drag,
+        dashpot,
+        slip,
+        work,
+        total,
+        residual,
+    })
 }
 
 /// Time (s), body and the numbers of a row of `trajectory.csv`.

@@ -24,6 +24,8 @@ pub(super) struct Files {
     pub trajectory: BufWriter<File>,
     pub ledger: BufWriter<File>,
     pub contacts: BufWriter<File>,
+    /// Whether the ledger has the column `work`.
+    pub has_work: bool,
 }
 
 /// What the pictures need.
@@ -158,11 +160,11 @@ impl Desk {
 
     fn write(&mut self, moment: Moment) -> Result<(), RunError> {
         let Moment { step, row, bodies } = moment;
-        let Files { trajectory, ledger, contacts } = &mut self.files;
+        let Files { trajectory, ledger, contacts, has_work } = &mut self.files;
         let failed = |name| move |error| (name, error);
         write_frame(trajectory, row.time, &self.names, &bodies)
             .map_err(failed(TRAJECTORY))
-            .and_then(|()| write_ledger(ledger, &row).map_err(failed(LEDGER)))
+            .and_then(|()| write_ledger(ledger, &row, *has_work).map_err(failed(LEDGER)))
             .and_then(|()| {
                 write_contacts(contacts, row.time, &self.names, &bodies).map_err(failed(CONTACTS))
             })
@@ -180,7 +182,7 @@ impl Desk {
         &mut self,
         act: impl Fn(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), RunError> {
-        let Files { trajectory, ledger, contacts } = &mut self.files;
+        let Files { trajectory, ledger, contacts, .. } = &mut self.files;
         for (name, file) in [(TRAJECTORY, trajectory), (LEDGER, ledger), (CONTACTS, contacts)] {
             act(file).map_err(|error| RunError::Write(self.folder.file(name), error))?;
         }

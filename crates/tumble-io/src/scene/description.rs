@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use tumble::{
-    DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Prescribed, Sampling,
-    Surface, WallBox, WallPlane,
+    DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Overlaps, Prescribed,
+    Sampling, Surface, WallBox, WallPlane,
 };
 
 use super::geometry::ShapeScene;
@@ -30,6 +30,8 @@ pub struct Scene {
     pub energy_tolerance: Option<f64>,
     /// The material of contacts that neither wall nor body says otherwise about.
     pub collision: Material,
+    /// What is done about bodies that start in each other.
+    pub overlaps: Overlaps,
     /// The box, if there is one.
     pub walls_of_box: Option<BoxScene>,
     /// The single walls.
@@ -186,6 +188,16 @@ impl Default for OutputScene {
 }
 
 impl Scene {
+    /// Whether something may put energy in: a body that moves by itself, or a belt.
+    pub fn does_work(&self) -> bool {
+        let moves = |body: &BodyScene| match body.motion {
+            MotionScene::Free => false,
+            MotionScene::Fixed { surface_velocity } => surface_velocity != DVec3::ZERO,
+            MotionScene::Prescribed(_) => true,
+        };
+        self.bodies.iter().any(moves)
+    }
+
     /// Whether there are several bodies, none of which has a surface that others could meet.
     pub fn bodies_pass_through(&self) -> bool {
         let count: u64 =

@@ -148,6 +148,7 @@ fn world(
         .integrator(scene.integrator)
         .energy_tolerance(scene.energy_tolerance)
         .force(scene.force)
+        .overlaps(scene.overlaps)
         .material(scene.collision);
     for (wall, material) in scene.all_walls() {
         builder = builder.wall_of(wall, material);

@@ -2,7 +2,9 @@
 
 use std::cell::RefCell;
 
-use tumble::{DQuat, DVec3, Damping, Integrator, Material, MaterialOverride, WallBox, WallPlane};
+use tumble::{
+    DQuat, DVec3, Damping, Integrator, Material, MaterialOverride, Overlaps, WallBox, WallPlane,
+};
 
 use super::body::{self, MOST_COPIES};
 use super::description::{BodyScene, BoxScene, Copies, OutputScene, Scene, WallScene};
@@ -50,6 +52,10 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
             .unwrap_or(0.0),
         collision,
         energy_tolerance: top.number("energy_tolerance", Range::BelowOne),
+        overlaps: match top.choice("overlaps", &["refuse", "push"]) {
+            Some("push") => Overlaps::Push,
+            _ => Overlaps::Refuse,
+        },
         walls_of_box,
         walls,
         bodies,
@@ -92,11 +98,14 @@ fn integrator(top: &Reader) -> Integrator {
 
 /// The keys of a material, in any table that may hold them.
 pub fn material(reader: &Reader) -> MaterialOverride {
+    reader.only_one(&["collision_stiffness", "collision_stiffness_per_area"]);
     reader.only_one(&["collision_damping", "restitution"]);
     let dashpot = reader.number("collision_damping", Range::NotNegative).map(Damping::Dashpot);
     let restitution = reader.number("restitution", Range::UpToOne).map(Damping::Restitution);
     MaterialOverride {
         collision_stiffness: reader.number("collision_stiffness", Range::NotNegative),
+        collision_stiffness_per_area: reader
+            .number("collision_stiffness_per_area", Range::NotNegative),
         damping: dashpot.or(restitution),
         friction_stiffness: reader.number("friction_stiffness", Range::NotNegative),
         friction_spring: reader.number("friction_spring", Range::NotNegative),

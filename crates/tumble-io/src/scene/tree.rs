@@ -8,6 +8,14 @@ use toml::de::{DeTable, DeValue};
 
 use super::problem::{Problem, Source};
 
+/// Keys of which a table may hold only one, and which mean something alone: setting one from outside takes the
+/// others out.
+pub const RIVALS: [&[&str]; 3] = [
+    &["collision_stiffness", "collision_stiffness_per_area"],
+    &["collision_damping", "restitution"],
+    &["particle_mass", "mass", "density"],
+];
+
 /// A key of more parts than this leads nowhere.
 const MOST_PARTS: usize = 32;
 
@@ -119,7 +127,9 @@ fn large(digits: &str, radix: u32) -> f64 {
 }
 
 /// Lays `KEY=VALUE` over the tree. KEY is dotted; `body.scale` reaches every body, `body.0.scale`
-/// the first. A VALUE that is no TOML is taken as a string, so that `integrator=euler` works.
+/// the first. A VALUE that is no TOML is taken as a string, so that `integrator=euler` works. A key of which only one
+/// may be given, such as `mass` or `density`, takes the place of the other: whoever sets one knows which
+/// is meant.
 pub fn set(root: &mut Node, assignment: &str, source: usize) -> Result<Source, Problem> {
     let told = Source { name: "--set".to_owned(), text: assignment.to_owned() };
     let whole = Place { source, span: 0..assignment.len() };
@@ -160,6 +170,12 @@ fn relocate(value: Value, place: &Place) -> Value {
     }
 }
 
+/// Takes the keys out of a table that cannot stand beside `key`.
+fn remove_rivals(entries: &mut Vec<Entry>, key: &str) {
+    let rivals = RIVALS.into_iter().find(|rivals| rivals.contains(&key)).unwrap_or_default();
+    entries.retain(|entry| entry.key == key || !rivals.contains(&entry.key.as_str()));
+}
+
 fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result<(), String> {
     let Some((&part, rest)) = path.split_first() else {
         *target = new.clone();
@@ -167,6 +183,9 @@ fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result
     };
     match &mut target.value {
         Value::Table(entries) => {
+            if rest.is_empty() {
+                remove_rivals(entries, part);
+            }
             let at = match entries.iter().position(|entry| entry.key == part) {
                 Some(at) => at,
                 None => {
@@ -251,6 +270,15 @@ mod tests {
             "{dt=Integer(2),body=[{scale=Integer(4)},{scale=Integer(3)}],\
              box={min=[Integer(0)]},w=String(\"a b\"),e=String(\"\")}"
         );
+        let mut root = tree("[collision]\nrestitution = 1\ncollision_stiffness = 1\nx = 1");
+        for assignment in ["collision.collision_stiffness_per_area=2", "collision.restitution=3"] {
+            set(&mut root, assignment, 1).unwrap();
+        }
+        assert_eq!(
+            told(&root),
+            "{collision={restitution=Integer(3),x=Integer(1),collision_stiffness_per_area=Integer(2)}}"
+        );
+        let mut root = tree("dt = 1\n[[body]]\nscale = 1\n[[body]]\n");
         let deep = vec!["a"; MOST_PARTS + 1].join(".") + "=1";
         for wrong in ["dt", "=1", "a..b=1", "dt.x=1", "body.2.scale=1", deep.as_str()] {
             assert!(set(&mut root, wrong, 1).is_err(), "{wrong}");

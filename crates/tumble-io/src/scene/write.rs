@@ -2,8 +2,8 @@
 
 use toml::{Table, Value};
 use tumble::{
-    DQuat, DVec3, Damping, MaterialOverride, Oscillation, Primitive, Sampling, Surface, WallBox,
-    WallPlane,
+    DQuat, DVec3, Damping, MaterialOverride, Oscillation, Overlaps, Primitive, Sampling, Surface,
+    WallBox, WallPlane,
 };
 
 use super::description::{BodyScene, Geometry, MassScene, MotionScene, Scene};
@@ -27,6 +27,9 @@ impl Scene {
         put(&mut top, "velocity_damping_stiffness", self.velocity_damping_stiffness);
         if let Some(tolerance) = self.energy_tolerance {
             put(&mut top, "energy_tolerance", tolerance);
+        }
+        if self.overlaps == Overlaps::Push {
+            put(&mut top, "overlaps", "push");
         }
         let mut collision = Table::new();
         put_material(&mut collision, &self.collision.into());
@@ -231,7 +234,11 @@ fn put_material(table: &mut Table, material: &MaterialOverride) {
             put(table, key, value);
         }
     };
-    number("collision_stiffness", material.collision_stiffness);
+    // of both, the reader would want only one, and this is the one that is heard
+    match material.collision_stiffness_per_area {
+        Some(stiffness) => number("collision_stiffness_per_area", Some(stiffness)),
+        None => number("collision_stiffness", material.collision_stiffness),
+    }
     match material.damping {
         Some(Damping::Dashpot(c)) => number("collision_damping", Some(c)),
         Some(Damping::Restitution(e)) => number("restitution", Some(e)),

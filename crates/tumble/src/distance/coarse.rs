@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::tree::Extent;
 
 /// Cells along the longest side of the box.
-const CELLS: f64 = 16.0;
+const CELLS: f64 = 12.0;
 /// What rounding may have added to a distance, in units of the box's longest side.
 const ROUNDING: f64 = 1e-12;
 
@@ -17,6 +17,8 @@ pub(super) struct Coarse {
     low: DVec3,
     /// Edge of a cell (m).
     edge: f64,
+    /// 1/edge (m⁻¹).
+    inverse: f64,
     counts: [usize; 3],
     /// Signed distances of the cells' centres, less their rounding (m).
     distances: Vec<f64>,
@@ -28,7 +30,8 @@ impl Coarse {
         let sides = bounds.high - bounds.low;
         let edge = sides.max_element() / CELLS;
         let counts = sides.to_array().map(|side| ((side / edge).ceil() as usize).max(1));
-        let mut grid = Self { low: bounds.low, edge, counts, distances: Vec::new() };
+        let mut grid =
+            Self { low: bounds.low, edge, inverse: 1.0 / edge, counts, distances: Vec::new() };
         let rounding = ROUNDING * sides.max_element();
         grid.distances.reserve_exact(counts.iter().product());
         for z in 0..counts[2] {
@@ -48,7 +51,7 @@ impl Coarse {
     /// The signed distance of a point is at least this (m).
     #[inline]
     pub fn at_least(&self, point: DVec3) -> f64 {
-        let place = (point - self.low) / self.edge;
+        let place = (point - self.low) * self.inverse;
         // the conversion saturates
         let cell = [0, 1, 2].map(|axis| (place[axis] as usize).min(self.counts[axis] - 1));
         let [x, y, z] = cell;

@@ -8,7 +8,7 @@ use super::triangle::Frame;
 /// How far beside a triangle a line still meets it, in units of its longest side: no line slips between two.
 const BESIDE: f64 = 1e-12;
 /// How many triangles [`thickness`] asks at most.
-const SAMPLE: usize = 1024;
+const SAMPLE: usize = 512;
 /// The part of the surface that is thinner than [`thickness`].
 const THIN_PART: f64 = 0.05;
 /// Nothing is thinner than this, in units of the size: parts that touch are not thin.
@@ -47,12 +47,12 @@ fn depth_under(tree: &Tree, slot: usize, size: f64) -> Option<f64> {
     let mut nearest = f64::INFINITY;
     let ray = Ray { from, along: to - from, part: [TOUCHING, 1.0] };
     tree.along_ray(&ray, |other, frame| {
-        if other != slot && frame.normal.dot(own.normal) < 0.0 {
-            if let Some(part) = crossing(frame, from, to) {
-                if part * reach > TOUCHING * size {
-                    nearest = nearest.min(part);
-                }
-            }
+        if other != slot
+            && frame.normal.dot(own.normal) < 0.0
+            && let Some(part) = crossing(frame, from, to)
+            && part * reach > TOUCHING * size
+        {
+            nearest = nearest.min(part);
         }
         nearest
     });

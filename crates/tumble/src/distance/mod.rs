@@ -20,13 +20,15 @@ use coarse::Coarse;
 pub use error::SurfaceError;
 use normals::Pseudonormals;
 use outline::Outline;
-use tree::{Extent, Found, Tree};
+use tree::{Extent, Tree};
 use triangle::{FACE, Foot};
 
 /// Marks triangles that do not count.
 const UNUSED: u32 = u32::MAX;
 /// Coordinates carry an error of this many roundings; a distance as small has no direction.
 const ROUNDINGS: f64 = 8.0;
+/// Points with larger coordinates (m) would lose their squares to the range of doubles.
+const FARTHEST: f64 = 1e140;
 
 /// The closest point of a surface, told from the point that asked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,7 +128,7 @@ impl SignedDistance {
     }
 
     /// The signed distance of a point (m), its gradient and the closest triangle; `None` where the point is farther
-    /// outside than `within` (m), or not finite. Points inside are found at any depth.
+    /// outside than `within` (m), not finite, or farther from the origin than 1e140 m. Points inside are found at any depth.
     ///
     /// `hint` is a triangle that may be close, as from the last query of a nearby point: it makes the search faster and
     /// changes nothing else. Any number will do.
@@ -134,22 +136,23 @@ impl SignedDistance {
     pub fn query(&self, point: DVec3, hint: u32, within: f64) -> Option<Nearest> {
         let most = self.search_radius(point, within)?;
         let hint = self.slots.get(hint as usize).map(|&slot| slot as usize);
-        let found = self.tree.nearest(self.level, point, most * most, hint)?;
-        let nearest = self.judge(point, &found);
+        let slot = self.tree.nearest(self.level, point, most * most, hint)?;
+        let nearest = self.judge(point, slot);
         (nearest.distance < 0.0 || nearest.distance <= within).then_some(nearest)
     }
 
     /// How far from a point the surface matters (m); `None` where the point surely is farther outside than `within` (m).
     #[inline]
     fn search_radius(&self, point: DVec3, within: f64) -> Option<f64> {
-        if !point.is_finite() {
+        // NaN is not below it
+        if !point.abs().cmple(DVec3::splat(FARTHEST)).all() {
             return None;
         }
         let mut at_least = self.bounds.distance(point);
         if let Some(coarse) = &self.coarse {
             at_least = at_least.max(coarse.at_least(point));
         }
-        if at_least > within {
+        if at_least > within.max(0.0) {
             return None;
         }
         // only outside the surface is of no interest beyond that radius
@@ -158,15 +161,15 @@ impl SignedDistance {
 
     /// The sign and the gradient from the closest triangle.
     #[inline]
-    fn judge(&self, point: DVec3, found: &Found) -> Nearest {
-        let frame = self.tree.frame(found.slot);
+    fn judge(&self, point: DVec3, slot: usize) -> Nearest {
+        let frame = self.tree.frame(slot);
         let Foot { feature, offset, squared } = frame.foot(point);
         let away = frame.turned_back(offset);
         let distance = if feature == FACE { offset.z.abs() } else { squared.sqrt() };
-        let normals = &self.normals[found.slot];
+        let normals = &self.normals[slot];
         let normal = if feature == FACE { frame.normal } else { normals.of(feature) };
 
-        let outside = if self.bounds.distance(point) > 0.0 {
+        let outside = if !self.bounds.contains(point) {
             true
         } else if normals.is_doubtful(feature) {
             self.tree.winding(point) <= 0.5
@@ -184,14 +187,14 @@ impl SignedDistance {
             away * (sign / distance)
         };
         // adding zero turns -0 into 0
-        Nearest { distance: sign * distance + 0.0, gradient, triangle: self.tree.index(found.slot) }
+        Nearest { distance: sign * distance + 0.0, gradient, triangle: self.tree.index(slot) }
     }
 
     /// Whether a ball is sure to be outside the solid: no point of it inside or on the surface.
     ///
-    /// `false` is no certainty of the contrary only within rounding.
+    /// But for rounding, `false` means that some point is. A ball that is not finite, or larger than 1e140 m, is never sure to be.
     pub fn outside_ball(&self, centre: DVec3, radius: f64) -> bool {
-        centre.is_finite() && self.query(centre, UNUSED, radius).is_none()
+        centre.is_finite() && radius <= FARTHEST && self.query(centre, UNUSED, radius).is_none()
     }
 
     /// Whether the segment between two points outside the solid crosses its surface. Where it only touches an edge or a
@@ -208,7 +211,7 @@ impl SignedDistance {
     /// A small but typical thickness of the solid (m): from the middle of a triangle straight inwards to where one leaves
     /// the solid; a twentieth of the surface, by area, has less below it.
     ///
-    /// Of large meshes 1024 triangles, spread evenly by area, are asked.
+    /// Of large meshes 512 triangles, spread evenly by area, are asked.
     pub fn thickness(&self) -> f64 {
         self.thickness
     }

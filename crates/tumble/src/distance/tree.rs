@@ -41,6 +41,12 @@ impl Extent {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
+    /// Whether a point is in the box.
+    #[inline(always)]
+    pub fn contains(&self, point: DVec3) -> bool {
+        self.low.max(point).min(self.high) == point
+    }
+
     /// The distance from a point outside (m), or zero.
     #[inline(always)]
     pub fn distance(&self, point: DVec3) -> f64 {
@@ -55,13 +61,6 @@ struct Item {
     /// Index in the mesh.
     index: u32,
     frame: Frame,
-}
-
-/// A triangle's slot, and its squared distance (m²).
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Found {
-    pub slot: usize,
-    pub squared: f64,
 }
 
 /// A ray: where from, where to, and the part of it that counts.
@@ -160,7 +159,7 @@ impl Tree {
         size_of::<Node>() * self.nodes.capacity() + size_of::<Group>() * self.groups.capacity()
     }
 
-    /// The triangle closest to a point, of equally close ones that with the lowest index; none if all are
+    /// The slot of the triangle closest to a point, of equally close ones that with the lowest index; none if all are
     /// farther than the root of `most` (m²). The group of slot `hint` is looked at first.
     pub fn nearest(
         &self,
@@ -168,7 +167,7 @@ impl Tree {
         point: DVec3,
         most: f64,
         hint: Option<usize>,
-    ) -> Option<Found> {
+    ) -> Option<usize> {
         dispatch!(level, simd => self.nearest_in(simd, point, most, hint))
     }
 
@@ -179,14 +178,19 @@ impl Tree {
         point: DVec3,
         most: f64,
         hint: Option<usize>,
-    ) -> Option<Found> {
+    ) -> Option<usize> {
         simd.vectorize(
             #[inline(always)]
             || {
                 let mut best = Best::new(most);
-                let point = point.to_array().map(|x| f64x4::splat(simd, x));
-                let hint = hint.map(|slot| slot / WIDTH).filter(|&group| group < self.groups.len());
-                if let Some(group) = hint {
+                let point = [
+                    f64x4::splat(simd, point.x),
+                    f64x4::splat(simd, point.y),
+                    f64x4::splat(simd, point.z),
+                ];
+                let hint = hint.map_or(usize::MAX, |slot| slot / WIDTH);
+                if hint < self.groups.len() {
+                    let group = hint;
                     best.look_at(group, &self.groups[group].squared(simd, point), self);
                 }
                 let mut waiting = [(0.0, 0u32); WAITING];
@@ -199,7 +203,7 @@ impl Tree {
                     }
                     if child & LEAF != 0 {
                         let group = (child & !LEAF) as usize;
-                        if hint != Some(group) {
+                        if hint != group {
                             best.look_at(group, &self.groups[group].squared(simd, point), self);
                         }
                         continue;
@@ -208,7 +212,7 @@ impl Tree {
                     let squared = node.squared(simd, point);
                     // the nearest goes on top
                     let start = count;
-                    for (squared, child) in squared.into_iter().zip(node.child) {
+                    for (&squared, &child) in squared.iter().zip(&node.child) {
                         if squared > best.limit {
                             continue;
                         }
@@ -221,8 +225,7 @@ impl Tree {
                         count += 1;
                     }
                 }
-                (best.slot != usize::MAX)
-                    .then_some(Found { slot: best.slot, squared: best.squared })
+                (best.slot != usize::MAX).then_some(best.slot)
             },
         )
     }
@@ -309,13 +312,18 @@ impl Node {
     /// The squared distances (m²) of the boxes from a point.
     #[inline(always)]
     fn squared<S: Simd>(&self, simd: S, point: [f64x4<S>; 3]) -> [f64; WIDTH] {
-        let zero = f64x4::splat(simd, 0.0);
-        let [x, y, z] = [0, 1, 2].map(|axis| {
-            let below = f64x4::simd_from(simd, self.low[axis]) - point[axis];
-            let above = point[axis] - f64x4::simd_from(simd, self.high[axis]);
-            below.max(above).max(zero)
-        });
+        let x = self.beyond(simd, point, 0);
+        let y = self.beyond(simd, point, 1);
+        let z = self.beyond(simd, point, 2);
         (x * x + y * y + z * z).into()
+    }
+
+    /// How far a point is out of the boxes along an axis (m).
+    #[inline(always)]
+    fn beyond<S: Simd>(&self, simd: S, point: [f64x4<S>; 3], axis: usize) -> f64x4<S> {
+        let below = f64x4::simd_from(simd, self.low[axis]) - point[axis];
+        let above = point[axis] - f64x4::simd_from(simd, self.high[axis]);
+        below.max(above).max(f64x4::splat(simd, 0.0))
     }
 
     /// Whether the box of a child may meet a ray.
@@ -359,6 +367,11 @@ impl Best {
 
     #[inline(always)]
     fn look_at(&mut self, group: usize, squared: &[f64; WIDTH], tree: &Tree) {
+        // most groups have nothing closer: one comparison for all
+        let [a, b, c, d] = *squared;
+        if a.min(b).min(c.min(d)) > self.squared {
+            return;
+        }
         for (lane, &squared) in squared.iter().enumerate() {
             if squared > self.squared {
                 continue;

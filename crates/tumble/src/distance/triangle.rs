@@ -19,6 +19,9 @@ pub(super) const SIDE: Feature = 1;
 /// The first of the corners a, b, c.
 pub(super) const CORNER: Feature = 4;
 
+/// Triangles lower than this part of their length get a normal from their frame, not the frame from the normal.
+const STOUT: f64 = 0.01;
+
 /// A triangle in its own frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
@@ -52,7 +55,12 @@ pub(super) struct Foot {
 /// The unit vector of any vector that is not zero, however small.
 fn direction(v: DVec3) -> DVec3 {
     let size = v.abs().max_element();
-    if size == 0.0 { DVec3::ZERO } else { (v / size).normalize() }
+    if size == 0.0 {
+        return DVec3::ZERO;
+    }
+    // divided, not multiplied by the inverse: what is along an axis stays so to the bit
+    let v = v / size;
+    v / v.length()
 }
 
 impl Frame {
@@ -70,13 +78,18 @@ impl Frame {
         let once = direction(side - along * along.dot(side));
         let twice = direction(once - along * along.dot(once));
         let across = if twice == DVec3::ZERO { along.any_orthonormal_vector() } else { twice };
+        // in a plane of two axes the product of two sides is exact, that of two unit vectors is not
+        let normal = direction((b - a).cross(side));
+        let is_thin = along.cross(side).length() < STOUT * along.dot(b - a);
+        let (across, normal) =
+            if is_thin { (across, along.cross(across)) } else { (normal.cross(along), normal) };
         let length = along.dot(b - a);
         let apex = [along.dot(side), across.dot(side)];
         let inverse = [apex[0], apex[0] - length].map(|x| {
             let inverse = 1.0 / (x * x + apex[1] * apex[1]);
             if inverse.is_finite() { inverse } else { 0.0 }
         });
-        Self { origin: a, along, across, normal: along.cross(across), length, apex, inverse }
+        Self { origin: a, along, across, normal, length, apex, inverse }
     }
 
     /// The triangle's area (m²).
@@ -127,14 +140,14 @@ impl Frame {
         let [cx, cy] = self.apex;
         let (bx, px) = (cx - self.length, p.x - self.length);
         let height = p.z * p.z;
-        let inside = p.y >= 0.0 && p.x * cy - p.y * cx >= 0.0 && bx * p.y - cy * px >= 0.0;
+        let inside = p.y > 0.0 && p.x * cy - p.y * cx > 0.0 && bx * p.y - cy * px > 0.0;
         if inside {
             return Foot { feature: FACE, offset: DVec3::new(0.0, 0.0, p.z), squared: height };
         }
         // the foot on each side: how far along, and from it to the point
         let ab = p.x.max(0.0).min(self.length);
-        let ca = ((p.x * cx + p.y * cy) * self.inverse[0]).max(0.0).min(1.0);
-        let bc = ((px * bx + p.y * cy) * self.inverse[1]).max(0.0).min(1.0);
+        let ca = ((p.x * cx + p.y * cy) * self.inverse[0]).clamp(0.0, 1.0);
+        let bc = ((px * bx + p.y * cy) * self.inverse[1]).clamp(0.0, 1.0);
         let sides = [
             (p.x - ab, p.y, ab / self.length, 0),
             (px - bc * bx, p.y - bc * cy, bc, 1),
@@ -221,29 +234,48 @@ impl Group {
     /// The squared distances (m²) to a point.
     #[inline(always)]
     pub fn squared<S: Simd>(&self, simd: S, point: [f64x4<S>; 3]) -> [f64; WIDTH] {
-        let load = |lanes: &[f64; WIDTH]| f64x4::simd_from(simd, *lanes);
         let zero = f64x4::splat(simd, 0.0);
         let one = f64x4::splat(simd, 1.0);
 
         // into the frame
-        let [x, y, z] = [0, 1, 2].map(|axis| point[axis] - load(&self.origin[axis]));
-        let dot = |v: &[[f64; WIDTH]; 3]| x * load(&v[0]) + y * load(&v[1]) + z * load(&v[2]);
-        let (x, y, z) = (dot(&self.along), dot(&self.across), dot(&self.normal));
-        let length = load(&self.length);
-        let (cx, cy) = (load(&self.apex[0]), load(&self.apex[1]));
+        let [x, y, z] = point;
+        let away = [
+            x - load(simd, &self.origin[0]),
+            y - load(simd, &self.origin[1]),
+            z - load(simd, &self.origin[2]),
+        ];
+        let x = dot(simd, away, &self.along);
+        let y = dot(simd, away, &self.across);
+        let z = dot(simd, away, &self.normal);
+        let length = load(simd, &self.length);
+        let (cx, cy) = (load(simd, &self.apex[0]), load(simd, &self.apex[1]));
         let (bx, px) = (cx - length, x - length);
 
         // to each side, and whether the face is closer
         let ab = x.max(zero).min(length);
-        let ca = ((x * cx + y * cy) * load(&self.inverse[0])).max(zero).min(one);
-        let bc = ((px * bx + y * cy) * load(&self.inverse[1])).max(zero).min(one);
-        let apart = |x: f64x4<S>, y: f64x4<S>| x * x + y * y;
-        let to_ab = apart(x - ab, y);
-        let to_bc = apart(px - bc * bx, y - bc * cy);
-        let to_ca = apart(x - ca * cx, y - ca * cy);
+        let ca = ((x * cx + y * cy) * load(simd, &self.inverse[0])).max(zero).min(one);
+        let bc = ((px * bx + y * cy) * load(simd, &self.inverse[1])).max(zero).min(one);
+        let to_ab = squared(x - ab, y);
+        let to_bc = squared(px - bc * bx, y - bc * cy);
+        let to_ca = squared(x - ca * cx, y - ca * cy);
         let inside =
-            y.simd_ge(zero) & (x * cy - y * cx).simd_ge(zero) & (bx * y - cy * px).simd_ge(zero);
+            y.simd_gt(zero) & (x * cy - y * cx).simd_gt(zero) & (bx * y - cy * px).simd_gt(zero);
         let plane = inside.select(zero, to_ab.min(to_bc).min(to_ca));
         (plane + z * z).into()
     }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, lanes: &[f64; WIDTH]) -> f64x4<S> {
+    f64x4::simd_from(simd, *lanes)
+}
+
+#[inline(always)]
+fn dot<S: Simd>(simd: S, [x, y, z]: [f64x4<S>; 3], axis: &[[f64; WIDTH]; 3]) -> f64x4<S> {
+    x * load(simd, &axis[0]) + y * load(simd, &axis[1]) + z * load(simd, &axis[2])
+}
+
+#[inline(always)]
+fn squared<S: Simd>(x: f64x4<S>, y: f64x4<S>) -> f64x4<S> {
+    x * x + y * y
 }

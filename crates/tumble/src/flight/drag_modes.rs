@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::Glide;
-use crate::shape::{Shape, diagonalise};
+use crate::shape::{ParticleMoments, PrincipalAxes, Shape, diagonalise};
 
 /// The six motions of a body that drag only slows down, each at its own rate.
 ///
@@ -29,11 +29,17 @@ impl DragModes {
     /// decay at one rate.
     pub fn of(shape: &Shape, mass: f64) -> Option<Self> {
         let moments = shape.moments();
-        if moments.carry_mass {
-            return None;
-        }
-        let axes = shape.principal().axes;
-        let inertia = shape.principal().moments * mass;
+        (!moments.carry_mass).then(|| Self::of_moments(moments, shape.principal(), mass))
+    }
+
+    /// Of a body of `mass` (kg) whose particles feel drag as `moments` say.
+    pub(crate) fn of_moments(
+        moments: &ParticleMoments,
+        principal: &PrincipalAxes,
+        mass: f64,
+    ) -> Self {
+        let axes = principal.axes;
+        let inertia = principal.moments * mass;
         let root_inertia = DVec3::new(inertia.x.sqrt(), inertia.y.sqrt(), inertia.z.sqrt());
         let inverse = root_inertia.to_array().map(|r| if r > 0.0 { 1.0 / r } else { 0.0 });
         let root_mass = mass.sqrt();
@@ -55,7 +61,7 @@ impl DragModes {
         }
         let (rates, modes) = diagonalise(matrix);
         let inverse_root_inertia = DVec3::from_array(inverse);
-        Some(Self { root_mass, root_inertia, inverse_root_inertia, rates, modes })
+        Self { root_mass, root_inertia, inverse_root_inertia, rates, modes }
     }
 
     /// The fastest rate for c = 1 (1/kg).

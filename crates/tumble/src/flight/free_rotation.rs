@@ -21,6 +21,8 @@
 
 use glam::DVec3;
 
+use super::small_turn::small_turn;
+
 /// λ t of a piece, so that its series converges fast.
 const PIECE: f64 = 0.25;
 /// Coefficients kept at most; a piece needs fewer.
@@ -67,7 +69,13 @@ impl Turn {
 /// How a body with the principal inverse moments `inverse` (1/(kg·m²), zero for an axis without
 /// inertia) and the angular momentum `momentum` (kg·m²/s, principal axes) turns in `time` (s):
 /// R(time) = R(0) · turn, in principal axes.
+#[inline]
 pub fn free_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> Turn {
+    small_turn(inverse, momentum, time).unwrap_or_else(|| any_turn(inverse, momentum, time))
+}
+
+/// [`free_rotation`], however far.
+pub(super) fn any_turn(inverse: DVec3, momentum: DVec3, time: f64) -> Turn {
     let length = length(momentum);
     if length == 0.0 || time == 0.0 {
         return Turn::NONE;

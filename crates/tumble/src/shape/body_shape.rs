@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::areas::{Cover, Shares};
 use super::mass::{MassProperties, PrincipalAxes, inertia_from_second_moment, outer};
 use super::{Mesh, OpenMesh, Particles, SampleError, Sampling, ShellError};
 
@@ -10,13 +11,15 @@ use super::{Mesh, OpenMesh, Particles, SampleError, Sampling, ShellError};
 /// The body frame has its origin at the centre of mass and the axes of the input coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    particles: Particles,
+    pub(super) particles: Particles,
     surface: Mesh,
     centre: DVec3,
     gyration: DMat3,
     principal: PrincipalAxes,
     moments: ParticleMoments,
     radius: f64,
+    pub(super) cover: Cover,
+    pub(super) shares: Option<Shares>,
 }
 
 /// Sums over the particles that the closed forms of drag need.
@@ -114,6 +117,15 @@ impl Shape {
         sampling: Sampling,
         mass_model: MassModel,
     ) -> Result<Self, ShapeError> {
+        let shape = Self::of_sampled_mesh(mesh, sampling, mass_model)?;
+        Ok(Self { cover: sampling.into(), ..shape })
+    }
+
+    fn of_sampled_mesh(
+        mesh: &Mesh,
+        sampling: Sampling,
+        mass_model: MassModel,
+    ) -> Result<Self, ShapeError> {
         let places = mesh.sample(sampling).map_err(ShapeError::Sample)?;
         let integrals = match mass_model {
             MassModel::Particles => return Self::with_surface(&places, mesh.clone()),
@@ -171,6 +183,8 @@ impl Shape {
             surface,
             centre,
             gyration,
+            cover: Cover::Bare,
+            shares: None,
         })
     }
 

@@ -4,7 +4,7 @@ use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::particles::{Group, Particles};
-use super::tree::{Branch, Node, Ramp, Side};
+use super::tree::{Branch, Moments, Node, Ramp, Side};
 use crate::lanes::{LANES, Vec3x8, largest, positive, sum};
 
 /// Branches that can wait at once: a tree of 2³² particles is no deeper.
@@ -14,7 +14,7 @@ const WAITING: usize = 32;
 /// equally deep but for rounding, and need not all be looked at.
 const CLOSE: f64 = 1e-4;
 
-/// Sums of a ramp f over some particles.
+/// Sums of a ramp f over some particles; each counts as often as it weighs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct RampSums {
     /// Σ f.
@@ -30,14 +30,25 @@ pub(crate) struct RampSums {
 impl Particles {
     /// Sums of `ramp` over the particles where it is above zero, and `within` too if there is one.
     pub(crate) fn sums(&self, level: Level, ramp: &Ramp, within: Option<&Ramp>) -> RampSums {
-        match within {
-            None => dispatch!(level, simd => self.sums_in(simd, ramp, &[])),
-            Some(within) => dispatch!(level, simd => self.sums_in(simd, ramp, &[*within])),
+        match (within, self.is_weighted()) {
+            (None, false) => {
+                dispatch!(level, simd => self.sums_in::<_, 0, false>(simd, ramp, &[]))
+            }
+            (Some(within), false) => {
+                dispatch!(level, simd => self.sums_in::<_, 1, false>(simd, ramp, &[*within]))
+            }
+            (None, true) => {
+                dispatch!(level, simd => self.sums_in::<_, 0, true>(simd, ramp, &[]))
+            }
+            (Some(within), true) => {
+                dispatch!(level, simd => self.sums_in::<_, 1, true>(simd, ramp, &[*within]))
+            }
         }
     }
 
+    /// Compiled once for particles that weigh and once for those that do not, which pay nothing for it.
     #[inline(always)]
-    fn sums_in<S: Simd, const N: usize>(
+    fn sums_in<S: Simd, const N: usize, const WEIGHTED: bool>(
         &self,
         simd: S,
         ramp: &Ramp,
@@ -57,12 +68,18 @@ impl Particles {
                     }
                     match side {
                         Side::Outside => {}
-                        Side::Inside => whole.add(node, ramp),
+                        Side::Inside if WEIGHTED => whole.add(self.weighted(branch), ramp),
+                        Side::Inside => whole.add(&node.moments, ramp),
                         Side::Cut => match branch.children() {
                             Some([a, b]) => waiting.both((a, 0.0), (b, 0.0)),
                             None => {
                                 for group in self.groups(simd, branch) {
-                                    lanes.add(simd, &group, ramp, within);
+                                    let value = LaneRamp::above(simd, &group, ramp, within);
+                                    let mut share = value;
+                                    if WEIGHTED {
+                                        share *= self.weights(simd, &group);
+                                    }
+                                    lanes.add(&group, value, share);
                                 }
                             }
                         },
@@ -191,12 +208,13 @@ impl Waiting {
 impl RampSums {
     /// Adds all particles of a node: f(r) = f(r̄) − slope·(r − r̄), and Σ (r − r̄) = 0.
     #[inline(always)]
-    fn add(&mut self, node: &Node, ramp: &Ramp) {
-        let mean = ramp.at(node.mean);
-        let turned = node.spread_times(ramp.slope);
-        self.sum += node.count * mean;
-        self.moment += node.mean * (node.count * mean) - turned;
-        self.squares += node.count * mean * mean + ramp.slope.dot(turned);
+    fn add(&mut self, moments: &Moments, ramp: &Ramp) {
+        let Moments { count, mean: place, .. } = *moments;
+        let mean = ramp.at(place);
+        let turned = moments.spread_times(ramp.slope);
+        self.sum += count * mean;
+        self.moment += place * (count * mean) - turned;
+        self.squares += count * mean * mean + ramp.slope.dot(turned);
         self.largest = None;
     }
 
@@ -226,17 +244,12 @@ impl<S: Simd> LaneSums<S> {
         Self { sum: zero, moment: Vec3x8::splat(simd, DVec3::ZERO), squares: zero, largest: zero }
     }
 
+    /// Adds the values of a group; `share` is each times what its particle weighs.
     #[inline(always)]
-    fn add<const N: usize>(&mut self, simd: S, group: &Group<S>, ramp: &Ramp, within: &[Ramp; N]) {
-        let zero = f64x8::splat(simd, 0.0);
-        let mut value = positive(simd, LaneRamp::over(simd, ramp).real(simd, group));
-        for ramp in within {
-            let counts = LaneRamp::over(simd, ramp).at(group.place).simd_gt(zero);
-            value = counts.select(value, zero);
-        }
-        self.sum += value;
-        self.moment += group.place * value;
-        self.squares += value * value;
+    fn add(&mut self, group: &Group<S>, value: f64x8<S>, share: f64x8<S>) {
+        self.sum += share;
+        self.moment += group.place * share;
+        self.squares += value * share;
         self.largest = value.simd_gt(self.largest).select(value, self.largest);
     }
 }
@@ -256,6 +269,23 @@ impl<S: Simd> LaneRamp<S> {
     #[inline(always)]
     fn at(&self, place: Vec3x8<S>) -> f64x8<S> {
         self.offset - self.slope.dot(place)
+    }
+
+    /// The ramp at the places of a group where it is above zero, and `within` too if there is one; else zero.
+    #[inline(always)]
+    fn above<const N: usize>(
+        simd: S,
+        group: &Group<S>,
+        ramp: &Ramp,
+        within: &[Ramp; N],
+    ) -> f64x8<S> {
+        let zero = f64x8::splat(simd, 0.0);
+        let mut value = positive(simd, LaneRamp::over(simd, ramp).real(simd, group));
+        for ramp in within {
+            let counts = LaneRamp::over(simd, ramp).at(group.place).simd_gt(zero);
+            value = counts.select(value, zero);
+        }
+        value
     }
 
     /// The values of the particles, and zero where there is none.

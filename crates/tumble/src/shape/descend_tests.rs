@@ -7,14 +7,15 @@ use super::*;
 use crate::lanes::levels;
 
 /// The same sums, one particle after the other.
-fn plain(places: &[DVec3], ramp: &Ramp, within: Option<&Ramp>) -> (RampSums, f64) {
+fn plain(particles: &Particles, ramp: &Ramp, within: Option<&Ramp>) -> (RampSums, f64) {
     let (mut sums, mut largest) = (RampSums::default(), 0.0f64);
-    for &place in places {
+    for (index, place) in particles.iter().enumerate() {
         let value = ramp.at(place);
         if value > 0.0 && within.is_none_or(|within| within.at(place) > 0.0) {
-            sums.sum += value;
-            sums.moment += place * value;
-            sums.squares += value * value;
+            let share = value * particles.weight(index);
+            sums.sum += share;
+            sums.moment += place * share;
+            sums.squares += value * share;
         }
         largest = largest.max(value);
     }
@@ -44,13 +45,38 @@ fn vector() -> impl Strategy<Value = DVec3> {
     [-1.0..1.0f64, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from_array)
 }
 
+/// Weights of some kind: none, all one, even ones, some of which are nothing or next to it, and a few heavy ones.
+fn weights(kind: u8, count: usize) -> Option<Vec<f64>> {
+    let one = |i: usize| {
+        let even = ((i as f64 + 1.0) * 0.754_877_666).fract();
+        match kind {
+            1 => 1.0,
+            2 if i.is_multiple_of(5) => 0.0,
+            2 if i.is_multiple_of(7) => 1e-300 * even,
+            2 => 2.0 * even,
+            _ if i.is_multiple_of(97) => 100.0 * even,
+            _ => 1e-3 * even,
+        }
+    };
+    (kind > 0).then(|| (0..count).map(one).collect())
+}
+
 fn check(places: &[DVec3], ramp: &Ramp, within: Option<&Ramp>) -> Result<(), TestCaseError> {
-    let particles = Particles::new(places.iter().copied());
-    let (expected, largest) = plain(places, ramp, within);
+    check_all(&Particles::new(places.iter().copied()), ramp, within)
+}
+
+fn check_all(
+    particles: &Particles,
+    ramp: &Ramp,
+    within: Option<&Ramp>,
+) -> Result<(), TestCaseError> {
+    let places: Vec<DVec3> = particles.iter().collect();
+    let weight: f64 = (0..places.len()).map(|i| particles.weight(i)).sum();
+    let (expected, largest) = plain(particles, ramp, within);
     // what is in play: the forces that add up, and the rounding of their arguments
     let reach = places.iter().fold(0.0f64, |m, p| m.max(p.length()));
     let size = ramp.offset.abs() + ramp.slope.length() * reach;
-    let play = 1e-12 * expected.sum + 1e-15 * size * places.len() as f64;
+    let play = 1e-12 * expected.sum + 1e-15 * size * weight;
     let best = particles.sums(levels()[0], ramp, within);
     prop_assert!((best.sum - expected.sum).abs() <= play, "{best:?} {expected:?}");
     prop_assert!((best.moment - expected.moment).length() <= play * reach, "{best:?} {expected:?}");
@@ -92,6 +118,7 @@ proptest! {
         other in prop::option::of((vector(), -1.0..1.0f64)),
         on_a_particle in any::<bool>(),
         size in prop_oneof![Just(1.0), Just(1e-100), Just(1e100)],
+        weigh in 0u8..4,
     ) {
         let places = places(kind, count, &seeds);
         let mut ramp = Ramp { offset, slope };
@@ -101,7 +128,11 @@ proptest! {
             other = other.map(|r| Ramp { offset: r.slope.dot(places[count / 3]), ..r });
         }
         let ramp = Ramp { offset: ramp.offset * size, slope: ramp.slope * size };
-        check(&places, &ramp, other.as_ref())?;
+        let mut particles = Particles::new(places.iter().copied());
+        if let Some(weights) = weights(weigh, count) {
+            particles = particles.with_weights(&weights);
+        }
+        check_all(&particles, &ramp, other.as_ref())?;
     }
 
     #[test]
@@ -122,6 +153,22 @@ fn a_million_particles_agree_with_a_plain_loop() {
     check(&places, &Ramp { offset: -0.9, slope }, None).unwrap();
     let other = Ramp { offset: 0.1, slope: DVec3::new(0.1, 0.9, -0.2) };
     check(&places, &Ramp { offset: 0.2, slope }, Some(&other)).unwrap();
+}
+
+#[test]
+fn weights_change_neither_slots_nor_bounds() {
+    let places = places(1, 10_000, &[DVec3::X]);
+    let plain = Particles::new(places.iter().copied());
+    let weighted = plain.clone().with_weights(&weights(2, places.len()).unwrap());
+    assert_eq!(plain.nodes(), weighted.nodes());
+    assert!((0..10_000).all(|i| plain.slot_of(i) == weighted.slot_of(i)));
+    assert_eq!((plain.weight(1), weighted.weight(0)), (1.0, 0.0));
+    let ramp = Ramp { offset: -0.2, slope: DVec3::new(0.36, -0.48, 0.8) };
+    assert_eq!(plain.largest(levels()[0], &ramp), weighted.largest(levels()[0], &ramp));
+    // particles that weigh nothing do nothing
+    let nothing = plain.with_weights(&[0.0; 10_000]);
+    assert_eq!(nothing.sums(levels()[0], &ramp, None).sum, 0.0);
+    assert_eq!(nothing.sums(levels()[0], &Ramp { offset: 9.0, ..ramp }, None).sum, 0.0);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What a body is made of: its mesh, its particles, its mass properties.
 
+mod areas;
 mod balls;
 mod body_shape;
 mod closedness;
@@ -12,6 +13,7 @@ mod primitive;
 mod sampling;
 mod tree;
 
+pub use areas::AreaError;
 pub use balls::{BallsError, ball_integrals};
 pub use body_shape::{MassModel, ParticleMoments, Shape, ShapeError};
 pub(crate) use closedness::weld;

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
 
-use super::tree::{self, Branch, Node};
+use super::tree::{self, Branch, Moments, Node};
 use crate::lanes::{LANES, Vec3x8};
 
 /// Places of particles in the body frame (m).
@@ -22,6 +22,10 @@ pub struct Particles {
     slot: Vec<u32>,
     /// The tree over them, from the root down, each left child right after its parent.
     nodes: Vec<Node>,
+    /// What they weigh, by slot, padded with zeros as the coordinates are; empty where each weighs one.
+    weights: Vec<f64>,
+    /// The moments of each node with these weights, or empty too.
+    weighted: Vec<Moments>,
 }
 
 impl Particles {
@@ -38,7 +42,19 @@ impl Particles {
             column.resize(column.len().next_multiple_of(LANES), 0.0);
             column
         };
-        Self { x: along(0), y: along(1), z: along(2), index, slot, nodes }
+        let (weights, weighted) = (Vec::new(), Vec::new());
+        Self { x: along(0), y: along(1), z: along(2), index, slot, nodes, weights, weighted }
+    }
+
+    /// The same particles, each with its weight wᵢ (in the order of the input), 0 or more and finite: what
+    /// contact does to a particle counts wᵢ times. Slots and tree stay as they are.
+    pub(crate) fn with_weights(mut self, weights: &[f64]) -> Self {
+        debug_assert_eq!(weights.len(), self.len());
+        self.weights = self.index.iter().map(|&i| weights[i as usize]).collect();
+        let places: Vec<DVec3> = (0..self.index.len() as u32).map(|slot| self.at(slot)).collect();
+        self.weighted = tree::weigh(&self.nodes, &places, &self.weights);
+        self.weights.resize(self.x.len(), 0.0);
+        self
     }
 
     /// How many there are.
@@ -64,11 +80,27 @@ impl Particles {
         self.slot.iter().map(|&slot| self.at(slot))
     }
 
+    /// How often the contact forces of one particle count, wᵢ: its share of the surface over the mean share
+    /// where stiffness is per area, else 1. The mean over all particles is 1.
+    ///
+    /// # Panics
+    /// When `index` is not below [`Particles::len`].
+    pub fn weight(&self, index: usize) -> f64 {
+        let slot = self.slot[index];
+        if self.is_weighted() { self.weights[slot as usize] } else { 1.0 }
+    }
+
+    /// Whether they have weights; else each weighs one.
+    pub fn is_weighted(&self) -> bool {
+        !self.weights.is_empty()
+    }
+
     /// Memory that they and their tree take (bytes).
     pub fn memory(&self) -> usize {
-        3 * size_of::<f64>() * self.x.capacity()
+        size_of::<f64>() * (3 * self.x.capacity() + self.weights.capacity())
             + size_of::<u32>() * (self.index.capacity() + self.slot.capacity())
             + size_of::<Node>() * self.nodes.capacity()
+            + size_of::<Moments>() * self.weighted.capacity()
     }
 
     /// Appends the slots of all particles but those in balls (centre and radius, m) that `may_matter` says no of, in
@@ -115,6 +147,19 @@ impl Particles {
     /// The tree.
     pub(super) fn nodes(&self) -> &[Node] {
         &self.nodes
+    }
+
+    /// The moments of a node of particles that weigh.
+    #[inline(always)]
+    pub(super) fn weighted(&self, branch: Branch) -> &Moments {
+        &self.weighted[branch.node as usize]
+    }
+
+    /// What the particles of a group weigh, where they do.
+    #[inline(always)]
+    pub(super) fn weights<S: Simd>(&self, simd: S, group: &Group<S>) -> f64x8<S> {
+        let weights = self.weights.as_chunks().0;
+        f64x8::simd_from(simd, weights[group.first as usize / LANES])
     }
 
     #[inline(always)]

@@ -40,11 +40,18 @@ pub(super) struct Node {
     centre: DVec3,
     /// Half the sides of the box (m).
     half: DVec3,
-    /// How many there are, N.
+    /// Their moments, each counted once whatever it weighs: bounds rest on them.
+    pub moments: Moments,
+}
+
+/// Sums over some particles, from which those of a ramp follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Moments {
+    /// How many there are, N, or what they weigh, Σ w.
     pub count: f64,
     /// Their mean r̄ (m).
     pub mean: DVec3,
-    /// Their spread Σ (r − r̄)(r − r̄)ᵀ (m²), as xx, yy, zz, xy, yz, zx.
+    /// Their spread Σ w (r − r̄)(r − r̄)ᵀ (m²), as xx, yy, zz, xy, yz, zx.
     spread: [f64; 6],
 }
 
@@ -82,41 +89,27 @@ impl Node {
         }
         let mean = sum / count;
         let spread = places.iter().map(|&p| outer(p - mean, p - mean)).sum();
-        Self { count, mean, spread: six(spread), ..Self::boxed(low, high) }
+        let moments = Moments { count, mean, spread: six(spread) };
+        Self { moments, ..Self::boxed(low, high) }
     }
 
-    /// Both together; the moments by the parallel axis theorem.
+    /// Both together.
     fn join(a: &Self, b: &Self) -> Self {
         let low = (a.centre - a.half).min(b.centre - b.half);
         let high = (a.centre + a.half).max(b.centre + b.half);
-        let count = a.count + b.count;
-        let apart = b.mean - a.mean;
-        let mean = a.mean + apart * (b.count / count);
-        let between = six(outer(apart, apart) * (a.count * b.count / count));
-        let spread = [0, 1, 2, 3, 4, 5].map(|i| a.spread[i] + b.spread[i] + between[i]);
-        Self { count, mean, spread, ..Self::boxed(low, high) }
+        Self { moments: Moments::join(&a.moments, &b.moments), ..Self::boxed(low, high) }
     }
 
     fn boxed(low: DVec3, high: DVec3) -> Self {
         let centre = 0.5 * (low + high);
         let half = (high - centre).max(centre - low);
-        Self { centre, half, count: 0.0, mean: centre, spread: [0.0; 6] }
+        let moments = Moments { count: 0.0, mean: centre, spread: [0.0; 6] };
+        Self { centre, half, moments }
     }
 
     /// Centre and radius (m) of a ball about the particles, whatever rounding does.
     pub fn ball(&self) -> (DVec3, f64) {
         (self.centre, self.half.length() * (1.0 + 1e-12))
-    }
-
-    /// The spread times a vector.
-    #[inline(always)]
-    pub fn spread_times(&self, v: DVec3) -> DVec3 {
-        let [xx, yy, zz, xy, yz, zx] = self.spread;
-        DVec3::new(
-            xx * v.x + xy * v.y + zx * v.z,
-            xy * v.x + yy * v.y + yz * v.z,
-            zx * v.x + yz * v.y + zz * v.z,
-        )
     }
 
     /// On which side of the zero of a ramp the node is. Leaves are as soon opened as looked at closely.
@@ -135,7 +128,7 @@ impl Node {
         if is_leaf {
             return Side::Cut;
         }
-        let (middle, reach) = (ramp.at(self.mean), self.thickness(ramp.slope));
+        let (middle, reach) = (ramp.at(self.moments.mean), self.thickness(ramp.slope));
         if middle + reach < -rounding {
             Side::Outside
         } else if middle - reach > rounding {
@@ -148,7 +141,7 @@ impl Node {
     /// The ramp is nowhere in the node above this, by its spread; for flat nodes of any orientation close.
     #[inline(always)]
     pub fn most_by_spread(&self, ramp: &Ramp) -> f64 {
-        ramp.at(self.mean) + self.thickness(ramp.slope)
+        ramp.at(self.moments.mean) + self.thickness(ramp.slope)
     }
 
     /// The ramp is nowhere in the node above this, by its box.
@@ -159,16 +152,79 @@ impl Node {
 
     /// How much a function of this slope can differ over the node from its value at the mean: no value of a set is
     /// farther from their mean than the root of the sum of squares. By this, flat sets of any orientation are thin.
+    /// Of weighted squares this is not so, which is why a node keeps the plain moments beside weighted ones.
     #[inline(always)]
     fn thickness(&self, slope: DVec3) -> f64 {
         // the square of a slope may underflow, its direction does not
         let size = slope.abs().max_element();
         let slope = slope / size.max(f64::MIN_POSITIVE);
-        let [xx, yy, zz, ..] = self.spread;
+        let [xx, yy, zz, ..] = self.moments.spread;
         // what rounding can hide in a spread
         let rounding = 16.0 * f64::EPSILON * (xx + yy + zz) * slope.length_squared();
-        (slope.dot(self.spread_times(slope)).max(0.0) + rounding).sqrt() * size
+        (slope.dot(self.moments.spread_times(slope)).max(0.0) + rounding).sqrt() * size
     }
+}
+
+impl Moments {
+    /// Of particles that weigh `weights`; where that is nothing, so are the moments.
+    fn weighted(places: &[DVec3], weights: &[f64]) -> Self {
+        let each = || places.iter().copied().zip(weights.iter().copied());
+        let count: f64 = weights.iter().sum();
+        let mean = each().map(|(p, w)| p * w).sum::<DVec3>() / count;
+        if !(count > 0.0 && mean.is_finite()) {
+            return Self { count: 0.0, mean: places[0], spread: [0.0; 6] };
+        }
+        let spread = each().map(|(p, w)| outer(p - mean, p - mean) * w).sum();
+        Self { count, mean, spread: six(spread) }
+    }
+
+    /// Both together, by the parallel axis theorem.
+    fn join(a: &Self, b: &Self) -> Self {
+        let count = a.count + b.count;
+        if count == 0.0 {
+            return *a;
+        }
+        let apart = b.mean - a.mean;
+        let mean = a.mean + apart * (b.count / count);
+        let between = six(outer(apart, apart) * (a.count * b.count / count));
+        let spread = [0, 1, 2, 3, 4, 5].map(|i| a.spread[i] + b.spread[i] + between[i]);
+        Self { count, mean, spread }
+    }
+
+    /// The spread times a vector.
+    #[inline(always)]
+    pub fn spread_times(&self, v: DVec3) -> DVec3 {
+        let [xx, yy, zz, xy, yz, zx] = self.spread;
+        DVec3::new(
+            xx * v.x + xy * v.y + zx * v.z,
+            xy * v.x + yy * v.y + yz * v.z,
+            zx * v.x + yz * v.y + zz * v.z,
+        )
+    }
+}
+
+/// The moments of every node of a tree over `places` that weigh `weights`, both in the order of its leaves.
+pub(super) fn weigh(nodes: &[Node], places: &[DVec3], weights: &[f64]) -> Vec<Moments> {
+    fn fill(branch: Branch, places: &[DVec3], weights: &[f64], all: &mut [Moments]) -> Moments {
+        let moments = match branch.children() {
+            Some([a, b]) => {
+                let a = fill(a, places, weights, all);
+                Moments::join(&a, &fill(b, places, weights, all))
+            }
+            None => {
+                let start = branch.first as usize * LEAF;
+                let end = (start + LEAF).min(places.len());
+                Moments::weighted(&places[start..end], &weights[start..end])
+            }
+        };
+        all[branch.node as usize] = moments;
+        moments
+    }
+    let mut all: Vec<Moments> = nodes.iter().map(|node| node.moments).collect();
+    if !nodes.is_empty() {
+        fill(Branch::root(nodes), places, weights, &mut all);
+    }
+    all
 }
 
 fn six(m: DMat3) -> [f64; 6] {

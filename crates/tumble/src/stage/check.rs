@@ -3,7 +3,7 @@
 use glam::DMat3;
 
 use super::TooFast;
-use crate::{BodyModel, BodyState, Model, Scratch, State, StepError};
+use crate::{BodyModel, BodyState, Model, Scratch, State, StepError, parallel};
 
 /// Refuses a state with a number that is NaN or infinite, a particle that has come more than half way from
 /// one wall to the wall that faces it, and a step that moves a particle that far: both could have
@@ -13,27 +13,29 @@ use crate::{BodyModel, BodyState, Model, Scratch, State, StepError};
 /// # Errors
 /// [`StepError`] names the step, time, body, particle, quantity and value, and a step that would do.
 pub fn check(model: &Model, state: &State, scratch: &Scratch) -> Result<(), StepError> {
-    for (index, body) in model.bodies.iter().enumerate() {
-        let body_state = &state.bodies[index];
+    let problem_of = |index: usize| {
+        let (body, body_state) = (&model.bodies[index], &state.bodies[index]);
         let problem = if is_finite(body_state) { None } else { not_finite(body_state) };
         let problem = problem.or_else(|| {
             let limit = 0.5 * model.gap?;
             too_deep(model, body, body_state, scratch.forces[index].max_depth, limit)
                 .or_else(|| too_far(model, body, body_state, limit))
         });
-        if let Some(Problem { quantity, value, particle, limit }) = problem {
-            return Err(StepError {
-                step: state.step,
-                time: state.time,
-                body: body.name.clone(),
-                particle,
-                quantity,
-                value,
-                other: None,
-                // a quarter of the limit leaves room for the motion to go on
-                dt: limit.map(|limit| 0.25 * model.dt * limit / value),
-            });
-        }
+        problem.map(|problem| (index, problem))
+    };
+    if let Some((index, problem)) = parallel::first_body(model.bodies.len(), problem_of) {
+        let Problem { quantity, value, particle, limit } = problem;
+        return Err(StepError {
+            step: state.step,
+            time: state.time,
+            body: model.bodies[index].name.clone(),
+            particle,
+            quantity,
+            value,
+            other: None,
+            // a quarter of the limit leaves room for the motion to go on
+            dt: limit.map(|limit| 0.25 * model.dt * limit / value),
+        });
     }
     match scratch.meeting.too_fast() {
         Some(pair) => Err(passes_through(model, state, &pair)),
@@ -64,10 +66,10 @@ struct Problem {
 }
 
 fn is_finite(state: &BodyState) -> bool {
-    state.position.is_finite()
-        && state.velocity.is_finite()
-        && state.orientation.is_finite()
-        && state.angular_momentum.is_finite()
+    // zero times what is not finite is NaN, and so is whatever it is added to
+    let sum = (state.position + state.velocity + state.angular_momentum) * 0.0;
+    let q = state.orientation * 0.0;
+    sum.x + sum.y + sum.z + (q.x + q.y) + (q.z + q.w) == 0.0
 }
 
 /// The first quantity that is not finite, and its value.

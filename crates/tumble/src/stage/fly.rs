@@ -55,34 +55,52 @@ pub(crate) fn fly_body(model: &Model, body: &BodyModel, state: &mut BodyState, h
 
 /// Flight with drag at one rate γ for both momenta; returns the energy that drag takes (J).
 fn glide(gravity: DVec3, body: &BodyModel, state: &mut BodyState, h: f64, rate: f64) -> f64 {
+    if rate == 0.0 {
+        turn(body, state, h);
+        state.position += state.velocity * h + gravity * (0.5 * h * h);
+        state.velocity += gravity * h;
+        return 0.0;
+    }
     let glide = Glide::new(h, rate);
-    let axes = body.shape.principal().axes;
-    let principal = DMat3::from_quat(state.orientation) * axes;
-    let momentum = principal.transpose() * state.angular_momentum;
-    let turn = free_rotation(body.inverse_moments, momentum, glide.free_time());
-    let lost = if rate == 0.0 {
-        0.0
-    } else {
-        let spin_energy = 0.5 * momentum.dot(body.inverse_moments * momentum);
-        body.mass * glide.loss(state.velocity, gravity) + spin_energy * glide.rotational_loss()
-    };
+    let spin_energy = turn(body, state, glide.free_time());
+    let lost =
+        body.mass * glide.loss(state.velocity, gravity) + spin_energy * glide.rotational_loss();
     let (way, velocity) = glide.advance(state.velocity, gravity);
     state.position += way;
     state.velocity = velocity;
     state.angular_momentum *= glide.decay();
-    let axis = axes * turn.vector;
-    turn_by(state, Turn { vector: axis, ..turn });
     lost
 }
 
-/// q ← q · turn, with what rounding takes kept for the next time.
-fn turn_by(state: &mut BodyState, turn: Turn) {
-    let small = DQuat::from_xyzw(turn.vector.x, turn.vector.y, turn.vector.z, turn.scalar);
-    let step = state.orientation * small;
+/// Turns the body as it does in the time `h` without drag; returns the energy of that rotation (J).
+fn turn(body: &BodyModel, state: &mut BodyState, h: f64) -> f64 {
+    let (inverse, momentum) = (body.inverse_moments, state.angular_momentum);
+    let q = state.orientation;
+    if inverse.x == inverse.y && inverse.y == inverse.z {
+        // every axis is a principal one, those of the world too
+        let small = quaternion(free_rotation(inverse, momentum, h));
+        turn_by(state, small * q);
+        return 0.5 * inverse.x * momentum.length_squared();
+    }
+    let axes = &body.shape.principal().axes;
+    let momentum = axes.transpose() * (q.conjugate() * momentum);
+    let turn = free_rotation(inverse, momentum, h);
+    let small = quaternion(Turn { vector: *axes * turn.vector, ..turn });
+    turn_by(state, q * small);
+    0.5 * momentum.dot(inverse * momentum)
+}
+
+/// The turn minus the identity.
+fn quaternion(turn: Turn) -> DQuat {
+    DQuat::from_xyzw(turn.vector.x, turn.vector.y, turn.vector.z, turn.scalar)
+}
+
+/// q ← q + `step`, with what rounding takes kept for the next time.
+fn turn_by(state: &mut BodyState, step: DQuat) {
     let (q, rest) = add(state.orientation, step + state.orientation_rest);
     // back to unit length, in the same careful way
     let defect = (q.length_squared() - 1.0) + 2.0 * q.dot(rest);
-    let (q, rest) = add(q, rest + q * (-0.5 * defect));
+    let (q, rest) = add_small(q, rest + q * (-0.5 * defect));
     state.orientation = q;
     state.orientation_rest = rest;
 }
@@ -92,4 +110,10 @@ fn add(a: DQuat, b: DQuat) -> (DQuat, DQuat) {
     let sum = a + b;
     let b_of_sum = sum - a;
     (sum, (a - (sum - b_of_sum)) + (b - b_of_sum))
+}
+
+/// The same where no component of `b` is larger than that of `a` (T. J. Dekker, Numer. Math. 18 (1971) 224).
+fn add_small(a: DQuat, b: DQuat) -> (DQuat, DQuat) {
+    let sum = a + b;
+    (sum, b - (sum - a))
 }

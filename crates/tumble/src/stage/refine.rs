@@ -17,6 +17,7 @@ use glam::DMat3;
 use super::contact::{Placed, Room, Touching, contact_body};
 use super::fly::fly_body;
 use super::kick::kick_body;
+use crate::parallel::CHUNK;
 use crate::{
     BodyForces, BodyModel, BodyState, FrictionSpring, Model, Scratch, State, Tally, Wrench,
 };
@@ -49,7 +50,7 @@ pub fn refine(model: &Model, state: &mut State, scratch: &mut Scratch, tolerance
             springs: &mut state.springs[index],
             forces: &mut scratch.forces[index],
             next: &mut scratch.springs[index],
-            touching: &mut scratch.touching,
+            touching: &mut scratch.touching[index / CHUNK],
             impulse: Wrench::default(),
         };
         state.tally += mover.in_parts(&mut scratch.backup, tolerance);

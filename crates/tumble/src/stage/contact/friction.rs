@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::placed::{NearWall, Placed};
 use crate::lanes::{LANES, Vec3x8, largest, positive, sum};
-use crate::{BodyForces, ContactLaw, FrictionSpring, Model, Wrench};
+use crate::{BodyForces, ContactLaw, FrictionSpring, Model, Particles, Wrench};
 
 /// The particles of one body that touch walls with friction.
 #[derive(Clone, Debug, Default)]
@@ -94,6 +94,17 @@ impl Touching {
                 next.push(FrictionSpring { wall: eight.wall, particle, anchor, stretch });
             }
         }
+    }
+}
+
+impl Eight {
+    /// What its particles weigh; lanes without a contact have no force to weigh.
+    fn weights(&self, particles: &Particles) -> [f64; LANES] {
+        let mut weights = [0.0; LANES];
+        for (weight, &particle) in weights.iter_mut().zip(&self.particle[..self.count as usize]) {
+            *weight = particles.weight(particle as usize);
+        }
+        weights
     }
 }
 
@@ -189,7 +200,8 @@ impl OldSprings<'_> {
     fn release(&mut self, spring: &FrictionSpring) {
         let law = &self.place.body.contacts[spring.wall as usize];
         let stretch = self.place.stretch(self.model, spring);
-        self.released += 0.5 * law.friction_spring * spring.stretch.dot(stretch);
+        let weight = self.place.body.shape.particles().weight(spring.particle as usize);
+        self.released += 0.5 * law.friction_spring * spring.stretch.dot(stretch) * weight;
     }
 }
 
@@ -198,6 +210,21 @@ struct Push<'a> {
     place: &'a Placed<'a>,
     normal: DVec3,
     law: ContactLaw,
+}
+
+/// What the particles of eight contacts weigh; where none does, nothing is multiplied.
+struct Weights<S: Simd, const WEIGHTED: bool>(f64x8<S>);
+
+impl<S: Simd, const WEIGHTED: bool> Weights<S, WEIGHTED> {
+    #[inline(always)]
+    fn of(&self, lanes: f64x8<S>) -> f64x8<S> {
+        if WEIGHTED { lanes * self.0 } else { lanes }
+    }
+
+    #[inline(always)]
+    fn of_vector(&self, lanes: Vec3x8<S>) -> Vec3x8<S> {
+        if WEIGHTED { lanes * self.0 } else { lanes }
+    }
 }
 
 /// Sums over the contacts, eight side by side.
@@ -227,8 +254,16 @@ impl Push<'_> {
             #[inline(always)]
             || {
                 let mut sums = Sums::zero(simd);
-                for eight in eights {
-                    self.eight(simd, eight, &mut sums);
+                let particles = self.place.body.shape.particles();
+                if particles.is_weighted() {
+                    for eight in eights {
+                        let weights = eight.weights(particles);
+                        self.eight::<S, true>(simd, eight, weights, &mut sums);
+                    }
+                } else {
+                    for eight in eights {
+                        self.eight::<S, false>(simd, eight, [1.0; LANES], &mut sums);
+                    }
                 }
                 *slipped += sum(sums.slip);
                 sums.give(self.normal, forces);
@@ -236,9 +271,18 @@ impl Push<'_> {
         );
     }
 
+    /// Every force of a particle that weighs w is w times that of the mean particle, the limit of friction
+    /// too, so that what slips and what holds does not depend on it.
     #[inline(always)]
-    fn eight<S: Simd>(&self, simd: S, eight: &mut Eight, sums: &mut Sums<S>) {
+    fn eight<S: Simd, const WEIGHTED: bool>(
+        &self,
+        simd: S,
+        eight: &mut Eight,
+        weights: [f64; LANES],
+        sums: &mut Sums<S>,
+    ) {
         let (place, law) = (self.place, &self.law);
+        let weights = Weights::<S, WEIGHTED>(f64x8::simd_from(simd, weights));
         let n = Vec3x8::splat(simd, self.normal);
         let arm = Vec3x8::load(simd, &eight.arm);
         let depth = f64x8::simd_from(simd, eight.depth);
@@ -249,10 +293,11 @@ impl Push<'_> {
         let spring = depth * law.stiffness;
         let push = positive(simd, spring - u.dot(n) * law.damping);
         let push = depth.simd_gt(f64x8::splat(simd, 0.0)).select(push, spring);
-        sums.spring += spring;
-        sums.spring_arm += arm * spring;
-        sums.push += push;
-        sums.push_arm += arm * push;
+        let (its_spring, its_push) = (weights.of(spring), weights.of(push));
+        sums.spring += its_spring;
+        sums.spring_arm += arm * its_spring;
+        sums.push += its_push;
+        sums.push_arm += arm * its_push;
         sums.deepest = sums.deepest.simd_gt(depth).select(sums.deepest, depth);
 
         // along the wall: a spring to the anchor, as much of it as the limit lets hold
@@ -264,16 +309,17 @@ impl Push<'_> {
         let kept = beyond.select(limit / pull, f64x8::splat(simd, 1.0));
         let held = stretch * kept;
         let lost = (Vec3x8::load(simd, &eight.before) + held).dot(stretch - held);
-        sums.slip += lost * (0.5 * law.friction_spring);
+        sums.slip += weights.of(lost * (0.5 * law.friction_spring));
         let hold = held * f64x8::splat(simd, -law.friction_spring);
-        sums.hold += hold;
-        sums.hold_torque += arm.cross(hold);
+        let its_hold = weights.of_vector(hold);
+        sums.hold += its_hold;
+        sums.hold_torque += arm.cross(its_hold);
         eight.held = held.store();
         eight.slips = beyond.to_bitmask();
 
         // and a dashpot within what the spring leaves of the limit
         let brake = u.across(n) * f64x8::splat(simd, -law.friction_damping);
-        let brake = brake * within(simd, hold, brake, limit);
+        let brake = weights.of_vector(brake * within(simd, hold, brake, limit));
         sums.brake += brake;
         sums.brake_torque += arm.cross(brake);
     }

@@ -17,24 +17,25 @@ mod tests;
 pub(crate) use friction::Touching;
 pub(crate) use placed::Placed;
 
+use crate::parallel;
 use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, Scratch, State, WallPlane};
 
 /// Contact forces on every body that act over the time `h` (s): dashpots feel the mean of the
 /// velocities before and after. With h = 0 they feel the velocities as they are.
 pub fn contact(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
-    for (index, body) in model.bodies.iter().enumerate() {
-        if !scratch.near[index] || body.has_spheres() {
-            scratch.forces[index].clear_contact();
-            scratch.springs[index].clear();
-            continue;
+    let Scratch { near, forces, springs, touching, .. } = scratch;
+    parallel::each_body_of_two(forces, springs, touching, |first, forces, springs, touching| {
+        for (index, (forces, next)) in (first..).zip(forces.iter_mut().zip(springs)) {
+            let body = &model.bodies[index];
+            if near[index] && !body.has_spheres() {
+                let room = Room { forces, next, touching };
+                contact_body(model, body, &state.bodies[index], &state.springs[index], room, h);
+            } else {
+                forces.clear_contact();
+                next.clear();
+            }
         }
-        let room = Room {
-            forces: &mut scratch.forces[index],
-            next: &mut scratch.springs[index],
-            touching: &mut scratch.touching,
-        };
-        contact_body(model, body, &state.bodies[index], &state.springs[index], room, h);
-    }
+    });
 }
 
 /// Where the contacts of a body go.

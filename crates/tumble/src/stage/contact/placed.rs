@@ -66,7 +66,14 @@ impl<'a> Placed<'a> {
     /// Energy in one friction spring (J).
     fn stored(&self, model: &Model, spring: &FrictionSpring) -> f64 {
         let stiffness = self.body.contacts[spring.wall as usize].friction_spring;
-        0.5 * stiffness * self.stretch(model, spring).length_squared()
+        let weight = self.body.shape.particles().weight(spring.particle as usize);
+        0.5 * stiffness * self.stretch(model, spring).length_squared() * weight
+    }
+
+    /// Depth of the deepest particle behind a wall (m); 0 where none is behind it.
+    pub fn depth_behind(&self, wall: &WallPlane) -> f64 {
+        let particles = self.body.shape.particles();
+        NearWall::of(wall, self).map_or(0.0, |near| particles.largest(self.level, &near.depth))
     }
 
     /// From the anchor of a friction spring to its particle, along the wall (m).

@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::contact::{Contact, PairForces};
+use super::contact::{Contact, Mount, PairForces, Touch};
 use super::list::{self, Near, Pair, Point};
 use super::pose::Pose;
 use crate::parallel::CHUNK;
@@ -96,16 +96,30 @@ impl Found {
                 }
                 if travel >= point.quiet {
                     match sides.touch(pair, point) {
-                        Ok(mut contact) => {
+                        Ok(touch) => {
                             point.quiet = 0.0;
-                            if pair.law.friction > 0.0 {
-                                // a new one is held where it is found
-                                if let Some(stretch) = springs.take(pair, &contact) {
-                                    contact.before = stretch;
-                                    contact.carry(pair.kind, sides.first, sides.second, h);
-                                }
+                            self.contacts.push(Contact {
+                                touch,
+                                before: DVec3::ZERO,
+                                stretch: DVec3::ZERO,
+                                held: 0.0,
+                                weight: sides.weight(pair, point),
+                                particle: point.particle,
+                                other: if pair.kind == ContactKind::Spheres {
+                                    point.other
+                                } else {
+                                    0
+                                },
+                            });
+                            // a new spring is held where it is found
+                            if pair.law.friction > 0.0
+                                && let Some(contact) = self.contacts.last_mut()
+                                && let Some(stretch) = springs.take(pair, contact)
+                            {
+                                contact.before = stretch;
+                                let mount = sides.mount(pair, touch.depth);
+                                contact.carry(&mount, sides.first, sides.second, h);
                             }
-                            self.contacts.push(contact);
                         }
                         Err(gap) => point.quiet = travel + gap,
                     }
@@ -127,14 +141,14 @@ impl Found {
         springs.release_all();
     }
 
-    /// The forces of all contacts with the velocities of `poses`.
-    pub fn push(&mut self, near: &Near, poses: &[Pose]) {
+    /// The forces of all contacts with the velocities of `poses`; of a first look the totals alone.
+    pub fn push<const FIRST: bool>(&mut self, near: &Near, poses: &[Pose]) {
         for touching in &mut self.touching {
             let pair = &near.pairs[touching.pair as usize];
             let (first, second) = ends(poses, pair);
             touching.forces = PairForces::default();
             for contact in &mut self.contacts[touching.start as usize..touching.end as usize] {
-                contact.push(&pair.law, first, second, &mut touching.forces);
+                contact.push::<FIRST>(&pair.law, first, second, &mut touching.forces);
             }
         }
     }
@@ -145,8 +159,9 @@ impl Found {
             let law = &near.pairs[touching.pair as usize].law;
             let contacts = &self.contacts[touching.start as usize..touching.end as usize];
             let stored = |contact: &Contact| {
-                law.stiffness * contact.depth * contact.depth
-                    + law.friction_spring * contact.stretch.length_squared()
+                contact.weight
+                    * (law.stiffness * contact.touch.depth * contact.touch.depth
+                        + law.friction_spring * contact.stretch.length_squared())
             };
             0.5 * contacts.iter().map(stored).sum::<f64>()
         };
@@ -188,7 +203,7 @@ fn spring(model: &Model, pair: &Pair, contact: &Contact) -> PairSpring {
         ContactKind::SecondInFirst => (index(second, contact.particle), 0),
         ContactKind::Wall | ContactKind::FirstInSecond => (index(first, contact.particle), 0),
     };
-    PairSpring { first, second, kind, particle, other, stretch: contact.held }
+    PairSpring { first, second, kind, particle, other, stretch: contact.stretch * contact.held }
 }
 
 /// What stands for a wall as second body.
@@ -232,7 +247,7 @@ impl<'a> Sides<'a> {
 
     /// The contact of a listed point, or how far it is from one (m).
     #[inline(always)]
-    fn touch(&self, pair: &Pair, point: &mut Point) -> Result<Contact, f64> {
+    fn touch(&self, pair: &Pair, point: &mut Point) -> Result<Touch, f64> {
         let (model, p, q) = (self.model, self.first, self.second);
         let a = &model.bodies[pair.first as usize];
         let (at, normal, depth) = match pair.kind {
@@ -273,28 +288,33 @@ impl<'a> Sides<'a> {
         if depth <= 0.0 {
             return Err(-depth);
         }
-        let zero = DVec3::ZERO;
+        Ok(Touch { normal, depth, arm: at - p.position, other_arm: at - q.position })
+    }
+
+    /// The weight of the particle that touches.
+    fn weight(&self, pair: &Pair, point: &Point) -> f64 {
+        let body = match pair.kind {
+            ContactKind::Spheres | ContactKind::Wall => return 1.0,
+            ContactKind::FirstInSecond => pair.first,
+            ContactKind::SecondInFirst => pair.second,
+        };
+        let particles = self.model.bodies[body as usize].shape.particles();
+        if particles.is_weighted() {
+            particles.weight(particles.index_in(point.particle) as usize)
+        } else {
+            1.0
+        }
+    }
+
+    /// How the point of a contact is fixed to the bodies.
+    fn mount(&self, pair: &Pair, depth: f64) -> Mount {
+        let radius = |body: u32| list::radius(&self.model.bodies[body as usize]) - 0.5 * depth;
         let (offset, other_offset) = match pair.kind {
             ContactKind::Wall | ContactKind::FirstInSecond => (pair.reach, 0.0),
             ContactKind::SecondInFirst => (0.0, pair.reach),
-            ContactKind::Spheres => {
-                let b = &model.bodies[pair.second as usize];
-                (list::radius(a) - 0.5 * depth, list::radius(b) - 0.5 * depth)
-            }
+            ContactKind::Spheres => (radius(pair.first), radius(pair.second)),
         };
-        Ok(Contact {
-            normal,
-            depth,
-            arm: at - p.position,
-            offset,
-            other_offset,
-            other_arm: at - q.position,
-            before: zero,
-            stretch: zero,
-            held: zero,
-            particle: point.particle,
-            other: if pair.kind == ContactKind::Spheres { point.other } else { 0 },
-        })
+        Mount { kind: pair.kind, offset, other_offset }
     }
 }
 
@@ -369,7 +389,7 @@ impl OldSprings<'_> {
 }
 
 /// Where the shapes keep the particles of a spring.
-pub(super) fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
+fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
     let slot = |body: u32, index| model.bodies[body as usize].shape.particles().slot_of(index);
     match spring.kind {
         ContactKind::Spheres => {
@@ -380,11 +400,18 @@ pub(super) fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
     }
 }
 
-/// k_t of a spring (N/m).
-pub(super) fn friction_spring(model: &Model, spring: &PairSpring) -> f64 {
+/// k_t of a spring (N/m), with the weight of its particle.
+fn friction_spring(model: &Model, spring: &PairSpring) -> f64 {
     let first = &model.bodies[spring.first as usize];
     if spring.kind == ContactKind::Wall {
         return first.contacts[spring.second as usize].friction_spring;
     }
-    list::law(first, &model.bodies[spring.second as usize], spring.kind).friction_spring
+    let second = &model.bodies[spring.second as usize];
+    let weight = |body: &BodyModel| body.shape.particles().weight(spring.particle as usize);
+    let weight = match spring.kind {
+        ContactKind::FirstInSecond => weight(first),
+        ContactKind::SecondInFirst => weight(second),
+        ContactKind::Wall | ContactKind::Spheres => 1.0,
+    };
+    weight * list::law(first, second, spring.kind).friction_spring
 }

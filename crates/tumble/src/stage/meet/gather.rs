@@ -26,8 +26,11 @@ pub(super) struct BodySum {
 
 impl BodySum {
     /// As first body of a pair.
-    fn add_first(&mut self, forces: &PairForces) {
+    fn add_first<const FIRST: bool>(&mut self, forces: &PairForces) {
         self.all += forces.all.on_first();
+        if FIRST {
+            return;
+        }
         self.dashpot += forces.dashpot.on_first();
         self.slip += forces.slip;
         self.belt_power += forces.belt_power;
@@ -36,8 +39,11 @@ impl BodySum {
     }
 
     /// As second body of a pair.
-    fn add_second(&mut self, forces: &PairForces) {
+    fn add_second<const FIRST: bool>(&mut self, forces: &PairForces) {
         self.all += forces.all.on_second();
+        if FIRST {
+            return;
+        }
         self.dashpot += forces.dashpot.on_second();
         self.max_depth = self.max_depth.max(forces.max_depth);
     }
@@ -45,11 +51,13 @@ impl BodySum {
 
 impl Meeting {
     /// Sums up what the latest push does to each body: first the pairs that it is the first of, then those
-    /// that it is the second of, in the order of the other.
-    pub(super) fn gather(&mut self) {
+    /// that it is the second of, in the order of the other. After a first look there are totals alone.
+    pub(super) fn gather<const FIRST: bool>(&mut self) {
         let (found, lists) = (&self.found, &self.lists);
         self.sums.resize(self.poses.len(), BodySum::default());
-        parallel::each_body(&mut self.sums, |body, sums| gather_chunk(found, lists, body, sums));
+        parallel::each_body(&mut self.sums, |body, sums| {
+            gather_chunk::<FIRST>(found, lists, body, sums);
+        });
     }
 
     /// Sets the velocities to those in the middle of the kick that the latest sums give over the time `h` (s).
@@ -58,7 +66,7 @@ impl Meeting {
         parallel::each_body(&mut self.poses, |first, poses| {
             for (index, pose) in (first..).zip(poses) {
                 let body = &model.bodies[index];
-                if body.is_free() && sums[index].max_depth > 0.0 {
+                if body.is_free() && sums[index].all != Wrench::default() {
                     let wrench = sums[index].all + others[index].contact();
                     pose.velocity += wrench.force * (0.5 * h / body.mass);
                     let spin = body.angular_velocity(pose.rotation, wrench.torque);
@@ -70,24 +78,32 @@ impl Meeting {
 
     /// Adds the latest sums to the forces of the bodies.
     pub(super) fn give(&self, forces: &mut [BodyForces]) {
-        for (sum, forces) in self.sums.iter().zip(forces) {
-            forces.spring += sum.all - sum.dashpot;
-            forces.dashpot += sum.dashpot;
-            forces.slip += sum.slip;
-            (forces.belt_power, forces.belt_loss) = (sum.belt_power, sum.belt_loss);
-            forces.max_depth = forces.max_depth.max(sum.max_depth);
-        }
+        let sums = &self.sums;
+        parallel::each_body(forces, |first, forces| {
+            for (sum, forces) in sums[first..].iter().zip(forces) {
+                forces.spring += sum.all - sum.dashpot;
+                forces.dashpot += sum.dashpot;
+                forces.slip += sum.slip;
+                (forces.belt_power, forces.belt_loss) = (sum.belt_power, sum.belt_loss);
+                forces.max_depth = forces.max_depth.max(sum.max_depth);
+            }
+        });
     }
 }
 
 /// The sums of the bodies of one chunk, the first of which is number `body`.
-fn gather_chunk(found: &[Found], lists: &Lists, body: usize, sums: &mut [BodySum]) {
+fn gather_chunk<const FIRST: bool>(
+    found: &[Found],
+    lists: &Lists,
+    body: usize,
+    sums: &mut [BodySum],
+) {
     let own = &found[body / CHUNK];
     for (sum, released) in sums.iter_mut().zip(&own.released) {
         *sum = BodySum { slip: *released, ..BodySum::default() };
     }
     for touching in &own.touching {
-        sums[touching.first as usize - body].add_first(&touching.forces);
+        sums[touching.first as usize - body].add_first::<FIRST>(&touching.forces);
     }
     for (index, sum) in (body..).zip(sums) {
         let range = lists.starts[index] as usize..lists.starts[index + 1] as usize;
@@ -95,7 +111,7 @@ fn gather_chunk(found: &[Found], lists: &Lists, body: usize, sums: &mut [BodySum
             let found = &found[chunk as usize];
             let number = found.number[pair as usize];
             if number != NONE {
-                sum.add_second(&found.touching[number as usize].forces);
+                sum.add_second::<FIRST>(&found.touching[number as usize].forces);
             }
         }
     }

@@ -11,14 +11,16 @@ mod gather;
 mod grid;
 mod list;
 mod pose;
+mod start;
 
 use self::find::Found;
 pub(crate) use self::find::TooFast;
 use self::gather::BodySum;
 use self::list::Lists;
 use self::pose::Pose;
+pub(crate) use self::start::{overlaps, push_apart};
 use crate::parallel::{self, CHUNK};
-use crate::{BodyModel, ContactKind, Integrator, Model, PairSpring, Scratch, State};
+use crate::{BodyModel, Integrator, Model, PairSpring, Scratch, State};
 
 /// Room for contacts between bodies. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -41,46 +43,16 @@ pub fn meet(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     let meeting = &mut scratch.meeting;
     meeting.place(model, state);
     meeting.find(model, &state.pair_springs, h);
-    meeting.push();
-    meeting.gather();
     let is_damped = |body: &BodyModel| body.pair_material.is_damped();
     if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
+        meeting.push::<true>();
+        meeting.gather::<true>();
         meeting.half_kick(model, &scratch.forces, h);
-        meeting.push();
-        meeting.gather();
     }
+    meeting.push::<false>();
+    meeting.gather::<false>();
     meeting.give(&mut scratch.forces);
 }
-
-/// Pairs of bodies that are deeper in each other (m) than a tenth of what their skins are measured by.
-pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<(u32, u32, f64)> {
-    if !model.meets {
-        return Vec::new();
-    }
-    let mut meeting = Meeting::default();
-    meeting.place(model, state);
-    meeting.find(model, &[], 0.0);
-    let mut overlaps = Vec::new();
-    for (found, near) in meeting.found.iter().zip(&meeting.lists.chunks) {
-        for touching in &found.touching {
-            let pair = &near.pairs[touching.pair as usize];
-            if pair.kind == ContactKind::Wall {
-                continue;
-            }
-            let contacts = &found.contacts[touching.start as usize..touching.end as usize];
-            let depth = contacts.iter().fold(0.0f64, |depth, contact| depth.max(contact.depth));
-            let grain = |body: u32| list::grain(&model.bodies[body as usize]);
-            if depth > DEEP * grain(pair.first).min(grain(pair.second)) {
-                overlaps.push((pair.first, pair.second, depth));
-            }
-        }
-    }
-    overlaps.dedup_by_key(|overlap| (overlap.0, overlap.1));
-    overlaps
-}
-
-/// Bodies that start deeper in each other than this part of their grain were put there by mistake.
-const DEEP: f64 = 0.1;
 
 impl Meeting {
     /// Puts the bodies where they are, and makes the lists anew where they no longer hold.
@@ -111,9 +83,11 @@ impl Meeting {
         });
     }
 
-    fn push(&mut self) {
+    fn push<const FIRST: bool>(&mut self) {
         let (poses, chunks) = (&self.poses, &self.lists.chunks);
-        parallel::each(&mut self.found, |index, found| found.push(&chunks[index], poses));
+        parallel::each(&mut self.found, |index, found| {
+            found.push::<FIRST>(&chunks[index], poses);
+        });
     }
 
     /// Energy in the springs between bodies and between spheres and walls, normal and tangential (J).

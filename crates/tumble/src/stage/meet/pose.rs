@@ -40,7 +40,10 @@ impl Pose {
             let rate = model.velocity_damping_stiffness / body.particle_mass();
             drift_velocity -= (model.gravity - state.velocity * rate) * half;
             let twist = omega.cross(state.angular_momentum);
-            drift_spin += body.angular_velocity(rotation, twist) * half;
+            // a sphere keeps its ω
+            if twist != DVec3::ZERO {
+                drift_spin += body.angular_velocity(rotation, twist) * half;
+            }
         }
         Self {
             drift_velocity,

