@@ -124,7 +124,14 @@ fn all_dominoes_fall_one_after_the_other() {
 
 #[test]
 fn a_hopper_lets_grains_out_below_alone() {
-    let fewer = ["--set", "body.2.copies.count=[5,4,5]", "--duration", "0.5"];
+    let fewer = [
+        "--set",
+        "body.2.copies.count=[5,4,5]",
+        "--set",
+        "body.2.position=[0,0.25,0]",
+        "--duration",
+        "0.5",
+    ];
     let (track, _) = run("hopper", &fewer);
     for (grain, rows) in track.iter().filter(|(name, _)| name.starts_with("grain")) {
         for row in rows.iter().filter(|row| row[2] > 0.12) {

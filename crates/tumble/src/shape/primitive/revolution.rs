@@ -188,8 +188,7 @@ pub(super) fn tube(
     let middle = |radius: f64| radius + 0.5 * thickness;
     let rise = height * (middle(top) - middle(bottom)) / (6.0 * (middle(top) + middle(bottom)));
     let (low, high) = (-0.5 * height - rise, 0.5 * height - rise);
-    let corners =
-        [[bottom + thickness, low], [top + thickness, high], [top, high], [bottom, low]];
+    let corners = [[bottom + thickness, low], [top + thickness, high], [top, high], [bottom, low]];
     let mut profile = Vec::new();
     for (i, &[r, y]) in corners.iter().enumerate() {
         let [next_r, next_y] = corners[(i + 1) % 4];

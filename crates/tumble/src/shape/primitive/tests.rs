@@ -148,7 +148,13 @@ fn round_shapes_approach_their_volume_with_the_square_of_the_resolution() {
         ),
         (
             // Pappus: section times the way of its middle, for a frustum too
-            Primitive::Tube { radius: 0.1, bottom_radius: 0.04, height: h, thickness: 0.02, segments: 0 },
+            Primitive::Tube {
+                radius: 0.1,
+                bottom_radius: 0.04,
+                height: h,
+                thickness: 0.02,
+                segments: 0,
+            },
             0.02 * h * 2.0 * PI * 0.08,
         ),
         (
