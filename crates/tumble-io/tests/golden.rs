@@ -10,16 +10,16 @@ use tumble_io::scene::{BUILTIN, LoadOptions, load_builtin};
 
 /// Name and state hash after 400 steps.
 const GOLDEN: &[(&str, &str)] = &[
-    ("task1", "89784919b55608302bf0f2ba8e450a37"),
-    ("task2", "166c845789beb0781e3d64d734f8506f"),
+    ("task1", "0250c4d3c6675bea0b46b3f629238c64"),
+    ("task2", "92ff8a894b7ff117a3fda6fe11033c6d"),
     ("task1-cat", "daac09b4740b63aacffb6857aab2708c"),
     ("task2-cat", "bd163607a118cb3d1e7e697b1f3fabfe"),
-    ("top", "93d71a947b97faf74eede21faf2f89c2"),
-    ("racket", "5675f2f02314daed7f3b503609cf8043"),
-    ("coin", "d2853d24762eb76477b5f85f828c3d4c"),
+    ("top", "52f8dfbb3e0c7755e0d864cdee8d6be1"),
+    ("racket", "58f87ebe4bfc4d004dcd914db700c9f1"),
+    ("coin", "c3c3e549af7b69b1f155ebdf005b3586"),
     ("slope", "d4a442a1bee5f295e93a54308ac624f0"),
-    ("many", "f497ce1ac531ca7c100043ba0de05c14"),
-    ("bounce", "407bca6fa98dd4a0e99dd6d4804d65ce"),
+    ("many", "c5ae10e078e1e8c216842acd9aae3cbb"),
+    ("bounce", "5a31c4305bd738cbe5e3ce90668a2d0c"),
 ];
 
 #[test]

@@ -119,6 +119,16 @@ pub fn transplant(old: &World, new: &mut World) -> Result<(), String> {
     };
     if before.walls != after.walls || friction(old) != friction(new) {
         state.springs.iter_mut().for_each(Vec::clear);
+        state.pair_springs.clear();
+    }
+    let meets = |world: &World| -> Vec<_> {
+        let bodies = world.model().bodies.iter();
+        bodies
+            .map(|body| (body.surface, body.is_free(), body.pair_material.friction > 0.0))
+            .collect()
+    };
+    if meets(old) != meets(new) {
+        state.pair_springs.clear();
     }
     // what refined steps owe is only ever given back by refined steps
     if after.energy_tolerance.is_none() {

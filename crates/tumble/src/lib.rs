@@ -5,7 +5,7 @@
 //! what the particles feel adds up to the force and torque that move the body.
 //!
 //! # Limits
-//! Bodies do not touch each other yet; walls are planes.
+//! Bodies touch each other by particles against surfaces ([`Surface`]): edge against edge is not seen. Walls are planes.
 //!
 //! # A tour
 //! - [`Shape`]: particles and mass distribution, made from points or a [`Mesh`].

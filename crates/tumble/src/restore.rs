@@ -1,6 +1,6 @@
 //! Whether a state that comes from outside is one that a model can go on from.
 
-use crate::{BodyModel, FrictionSpring, Model, State};
+use crate::{BodyModel, ContactKind, FrictionSpring, Model, PairSpring, State};
 
 /// Why a state does not fit a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +28,14 @@ pub enum StateError {
         /// The quantity: a field of [`BodyState`](crate::BodyState),
         /// [`FrictionSpring`] or [`Tally`](crate::Tally).
         quantity: &'static str,
+    },
+    /// A friction spring between bodies is of bodies, walls or particles that are not there or cannot touch so, or out of
+    /// order.
+    PairSpring {
+        /// Index of the first body.
+        first: u32,
+        /// Index of the second body, or of the wall.
+        second: u32,
     },
     /// A friction spring is of a wall or a particle that is not there, or out of order.
     Spring {
@@ -58,6 +66,10 @@ impl std::fmt::Display for StateError {
             Self::Value { body, quantity } => {
                 write!(f, "`{quantity}` of body \"{body}\" is not a possible number")
             }
+            Self::PairSpring { first, second } => write!(
+                f,
+                "bodies {first} and {second} (counted from 0) cannot have the friction spring that the state says"
+            ),
             Self::Spring { body, wall, particle } => write!(
                 f,
                 "body \"{body}\" cannot have a friction spring of particle {particle} at wall {wall}"
@@ -101,11 +113,13 @@ impl State {
         for (body, springs) in model.bodies.iter().zip(&self.springs) {
             fitting_springs(body, springs)?;
         }
+        fitting_pair_springs(model, &self.pair_springs)?;
         let tally = &self.tally;
         let values = [
             ("drag", tally.drag.is_finite()),
             ("dashpot", tally.dashpot.is_finite()),
             ("slip", tally.slip.is_finite()),
+            ("work", tally.work.is_finite()),
             ("max_depth", tally.max_depth.is_finite()),
         ];
         possible("", &values)
@@ -139,4 +153,47 @@ fn fitting_springs(body: &BodyModel, springs: &[FrictionSpring]) -> Result<(), S
         before = key;
     }
     Ok(())
+}
+
+/// Springs between bodies that are there and can touch so, each once, in order.
+fn fitting_pair_springs(model: &Model, springs: &[PairSpring]) -> Result<(), StateError> {
+    let mut before = None;
+    for spring in springs {
+        let key = pair_key(model, spring);
+        if key.is_none() || before >= key || !spring.stretch.is_finite() {
+            return Err(StateError::PairSpring { first: spring.first, second: spring.second });
+        }
+        before = key;
+    }
+    Ok(())
+}
+
+/// By what springs between bodies are sorted; `None` for one that cannot be.
+fn pair_key(model: &Model, spring: &PairSpring) -> Option<(u32, bool, u32, ContactKind, u32, u32)> {
+    let PairSpring { first, second, kind, particle, other, .. } = *spring;
+    let body = |index: u32| model.bodies.get(index as usize);
+    let slot = |index: u32, particle: u32| {
+        let particles = body(index)?.shape.particles();
+        ((particle as usize) < particles.len()).then(|| particles.slot_of(particle))
+    };
+    let a = body(first)?;
+    let is_other = kind == ContactKind::Spheres || other == 0;
+    let (particle, other) = match kind {
+        ContactKind::Wall => {
+            let there = a.has_spheres() && a.is_free() && (second as usize) < a.contacts.len();
+            (slot(first, particle).filter(|_| there)?, 0)
+        }
+        _ => {
+            let b = body(second).filter(|_| first < second)?;
+            if !crate::stage::can_touch(a, b, kind) {
+                return None;
+            }
+            match kind {
+                ContactKind::Spheres => (slot(first, particle)?, slot(second, other)?),
+                ContactKind::SecondInFirst => (slot(second, particle)?, 0),
+                _ => (slot(first, particle)?, 0),
+            }
+        }
+    };
+    is_other.then_some((first, kind != ContactKind::Wall, second, kind, particle, other))
 }

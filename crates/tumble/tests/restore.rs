@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use tumble::{
-    Body, DQuat, DVec3, Damping, Integrator, MassModel, Material, Primitive, Sampling, Shape,
-    State, StateError, WallPlane, World,
+    Body, ContactKind, DQuat, DVec3, Damping, Integrator, MassModel, Material, Primitive, Sampling,
+    Shape, State, StateError, Surface, WallPlane, World,
 };
 
 /// A box that tumbles down a slope with friction and dashpots, and one that falls beside it.
@@ -130,4 +130,45 @@ fn springs_of_a_body_that_has_left_do_not_come_back() {
         let in_the_air = kept.body(0).position().y > 0.1;
         assert!(!in_the_air || kept.state().springs[0].is_empty());
     }
+}
+
+#[test]
+fn springs_between_bodies_that_cannot_be_are_refused() {
+    let clump = Shape::of_particles(&[DVec3::X * 0.05, DVec3::X * -0.05]).unwrap();
+    let surface = Surface::Spheres { radius: 0.05 };
+    let clump = Body::new(clump).mass(1.0).surface(surface);
+    let material = Material { friction_stiffness: 0.5, ..Material::default() };
+    let mut world = World::builder()
+        .dt(1e-4)
+        .material(material)
+        .wall(WallPlane::new(DVec3::Y, 0.0).unwrap())
+        .body(clump.clone().position(DVec3::Y * 0.05))
+        .body(clump.position(DVec3::new(0.01, 0.15, 0.0)))
+        .build()
+        .unwrap();
+    advance(&mut world, 1000);
+    let state = world.state().clone();
+    assert!(state.pair_springs.len() >= 4, "{:?}", state.pair_springs);
+    assert_eq!(state.fits(world.model()), Ok(()));
+    let spoil = |change: &dyn Fn(&mut State)| {
+        let mut spoiled = state.clone();
+        change(&mut spoiled);
+        spoiled.fits(world.model())
+    };
+    let last = state.pair_springs.len() - 1;
+    let forged: [&dyn Fn(&mut State); 7] = [
+        &|s| s.pair_springs[0].second = 9,
+        &|s| s.pair_springs[0].first = 9,
+        &|s| s.pair_springs[last].particle = 2,
+        &|s| s.pair_springs[last].other = 2,
+        &|s| s.pair_springs[last].kind = ContactKind::FirstInSecond,
+        &|s| s.pair_springs[last].stretch.x = f64::NAN,
+        &|s| s.pair_springs.swap(0, last),
+    ];
+    for (number, change) in forged.into_iter().enumerate() {
+        let found = spoil(change);
+        assert!(matches!(found, Err(StateError::PairSpring { .. })), "{number}: {found:?}");
+    }
+    let work: &dyn Fn(&mut State) = &|s| s.tally.work = f64::NAN;
+    assert!(spoil(work).is_err());
 }

@@ -23,7 +23,7 @@ pub use fly::{cruise, fly};
 pub use gravity::gravity;
 pub use kick::kick;
 pub use meet::meet;
-pub(crate) use meet::{Meeting, TooFast, overlaps, push_apart};
+pub(crate) use meet::{Meeting, TooFast, can_touch, overlaps, push_apart};
 pub use pull::{Pull, pull};
 pub use reach::reach;
 pub use refine::refine;

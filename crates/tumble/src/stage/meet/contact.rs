@@ -108,6 +108,7 @@ impl Contact {
     /// Carries the tangential spring on over the time `h` (s) since the latest kick: it turns with the normal and with the
     /// surface that holds it, keeps its length, and stretches by the way of the one body against the other,
     /// with velocity and arms as they were in the middle of that time.
+    #[inline(always)]
     pub fn carry(&mut self, mount: &Mount, first: &Pose, second: &Pose, h: f64) {
         let kind = mount.kind;
         let Touch { normal: n, arm, other_arm, .. } = self.touch;

@@ -61,6 +61,7 @@ pub(super) struct Touching {
 impl Found {
     /// Finds the contacts among the listed points of a chunk whose first body is number `body`. `old` are all springs
     /// so far, `h` (s) is the time since the latest kick.
+    #[inline(always)]
     pub fn find(
         &mut self,
         near: &mut Near,
@@ -142,6 +143,7 @@ impl Found {
     }
 
     /// The forces of all contacts with the velocities of `poses`; of a first look the totals alone.
+    #[inline(always)]
     pub fn push<const FIRST: bool>(&mut self, near: &Near, poses: &[Pose]) {
         for touching in &mut self.touching {
             let pair = &near.pairs[touching.pair as usize];
@@ -228,15 +230,17 @@ impl<'a> Sides<'a> {
         Self { model, first, second }
     }
 
-    /// How far the one can come against the other in a step (m).
+    /// How far the one can come against the other in a step (m), at most.
     fn way(&self, pair: &Pair) -> f64 {
         let Self { model, first, second } = self;
+        let most = first.way + second.way;
+        if most <= pair.limit {
+            return most;
+        }
+        // what both have in common does not count
         let rim = |pose: &Pose, body: u32| {
             pose.angular_velocity.length() * model.bodies[body as usize].extent
         };
-        if pair.limit == f64::INFINITY {
-            return 0.0;
-        }
         let turning = rim(first, pair.first) + rim(second, pair.second);
         model.dt * ((first.velocity - second.velocity).length() + turning)
     }

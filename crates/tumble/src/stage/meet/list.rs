@@ -71,8 +71,8 @@ pub(super) struct Lists {
 
 /// How far a body may travel before the lists are made anew (m): at least the way of two steps, so that what one step could
 /// jump over is listed.
-fn skin(body: &BodyModel, pose: &Pose, h: f64) -> f64 {
-    (SKIN * grain(body)).max(2.0 * h * pose.speed(body))
+fn skin(body: &BodyModel, pose: &Pose) -> f64 {
+    (SKIN * grain(body)).max(2.0 * pose.way)
 }
 
 /// The size of the smallest features of a body that matter (m).
@@ -94,7 +94,7 @@ impl Lists {
         let bodies = &model.bodies;
         self.balls.clear();
         for (body, pose) in bodies.iter().zip(&mut *poses) {
-            pose.skin = skin(body, pose, model.dt);
+            pose.skin = skin(body, pose);
             let reach = body.extent + pose.skin;
             self.balls.push(Ball { centre: pose.position, reach, active: body.is_free() });
         }
@@ -285,6 +285,11 @@ impl Side<'_> {
         particles.list_where(|centre, radius| near(centre, radius + reach), slots);
         slots.retain(|&slot| near(particles.at(slot), reach));
     }
+}
+
+/// Whether two bodies can touch in this way.
+pub(crate) fn can_touch(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> bool {
+    (first.is_free() || second.is_free()) && kinds(first, second).contains(&kind)
 }
 
 /// The ways in which two bodies can touch.

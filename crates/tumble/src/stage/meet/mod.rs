@@ -13,10 +13,13 @@ mod list;
 mod pose;
 mod start;
 
+use fearless_simd::{Level, Simd, dispatch};
+
 use self::find::Found;
 pub(crate) use self::find::TooFast;
 use self::gather::BodySum;
 use self::list::Lists;
+pub(crate) use self::list::can_touch;
 use self::pose::Pose;
 pub(crate) use self::start::{overlaps, push_apart};
 use crate::parallel::{self, CHUNK};
@@ -79,14 +82,14 @@ impl Meeting {
         let poses = &self.poses;
         self.found.resize_with(self.lists.chunks.len(), Found::default);
         parallel::each_of_two(&mut self.found, &mut self.lists.chunks, |index, found, near| {
-            found.find(near, model, poses, old, h, index * CHUNK);
+            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.find(near, model, poses, old, h, index * CHUNK)));
         });
     }
 
     fn push<const FIRST: bool>(&mut self) {
         let (poses, chunks) = (&self.poses, &self.lists.chunks);
         parallel::each(&mut self.found, |index, found| {
-            found.push::<FIRST>(&chunks[index], poses);
+            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.push::<FIRST>(&chunks[index], poses)));
         });
     }
 

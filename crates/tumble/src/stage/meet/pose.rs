@@ -21,6 +21,8 @@ pub(super) struct Pose {
     pub travel: f64,
     /// How far it may come before they are made anew (m).
     pub skin: f64,
+    /// No point of the body comes farther than this in a step (m).
+    pub way: f64,
 }
 
 impl Pose {
@@ -56,6 +58,7 @@ impl Pose {
             orientation: state.orientation,
             travel: 0.0,
             skin: 0.0,
+            way: model.dt * (state.velocity.length() + omega.length() * body.extent),
         }
     }
 
@@ -75,11 +78,6 @@ impl Pose {
     #[inline(always)]
     pub fn place(&self, body: &BodyModel, slot: u32) -> DVec3 {
         self.position + self.rotation * body.shape.particles().at(slot)
-    }
-
-    /// No point of the body is faster than this (m/s).
-    pub fn speed(&self, body: &BodyModel) -> f64 {
-        self.velocity.length() + self.angular_velocity.length() * body.extent
     }
 
     /// The velocity of the body at an arm from its centre of mass.
