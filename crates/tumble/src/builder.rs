@@ -10,8 +10,8 @@ use self::twins::Twins;
 use crate::surface::Solids;
 use crate::{
     BodyModel, BodyState, BuildError, BuildErrors, ContactLaw, Damping, DragModes, Integrator,
-    Material, MaterialOverride, Model, Motion, Overlaps, PairMaterial, Shape, State, Surface,
-    WallBox, WallPlane, World, critical_dt,
+    Material, MaterialOverride, Model, Motion, Overlaps, PairMaterial, Prescribed, Shape, State,
+    Surface, WallBox, WallPlane, World, critical_dt,
 };
 
 /// A body as a user describes it.
@@ -504,7 +504,14 @@ fn body_state(model: &BodyModel, body: &Body) -> Result<BodyState, BuildError> {
     if !angular_momentum.is_finite() {
         return refuse("initial_angular_velocity", &body.angular_velocity, three);
     }
-    let velocity = body.velocity;
+    let swing = match &body.motion {
+        Motion::Prescribed(Prescribed { oscillation: Some(swing), .. }) => swing.at(0.0).1,
+        _ => DVec3::ZERO,
+    };
+    let velocity = body.velocity + swing;
+    if !velocity.is_finite() {
+        return refuse("oscillation", &swing, "no faster than a double can hold");
+    }
     Ok(BodyState { position, velocity, orientation, angular_momentum, ..BodyState::default() })
 }
 

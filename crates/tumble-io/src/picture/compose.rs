@@ -6,7 +6,7 @@ use super::image::Image;
 use super::legend::Trail;
 use super::raster::Layer;
 use super::surface::{self, Edge, Surface};
-use super::{MotionPicture, View, drawable, legend, moments};
+use super::{MotionPicture, Pose, View, drawable, legend, moments};
 use crate::looks::DRIVEN;
 use glam::DVec3;
 
@@ -305,6 +305,9 @@ impl<'a> Studio<'a> {
             for (body, figure) in self.figures.iter().enumerate() {
                 let Some(pose) = frame.pose(body) else { continue };
                 let Moment { paleness, alpha, .. } = *moment;
+                if alpha < 255 && self.ends_at(body, figure, &pose) {
+                    continue;
+                }
                 let colour = colour_of(&self.picture, body);
                 if !self.picture.bodies[body].is_driven {
                     figure.draw(&pose, camera, &light, Paint { colour, paleness, alpha }, layer);
@@ -315,6 +318,17 @@ impl<'a> Studio<'a> {
                 }
             }
         }
+    }
+
+    /// Whether a body stands at the last moment where it stands here: the one would shine through the other in patches.
+    fn ends_at(&self, body: usize, figure: &Figure, pose: &Pose) -> bool {
+        let last = self.chosen.last().and_then(|&frame| self.picture.frames[frame].pose(body));
+        last.is_some_and(|last| {
+            let moved = last.position.distance(pose.position) > 0.1 * figure.spread;
+            // the cosine of half an angle of 0.1 rad
+            let turned = last.orientation.dot(pose.orientation).abs() < 0.99875;
+            !moved && !turned
+        })
     }
 
     /// The smaller the picture, the thinner its lines.

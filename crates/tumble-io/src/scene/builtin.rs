@@ -19,7 +19,7 @@ macro_rules! builtin {
 }
 
 /// All built-in scenes, in the order in which they teach.
-pub const BUILTIN: [Builtin; 10] = builtin![
+pub const BUILTIN: [Builtin; 18] = builtin![
     "task1",
     "task2",
     "task1-cat",
@@ -30,6 +30,14 @@ pub const BUILTIN: [Builtin; 10] = builtin![
     "slope",
     "many",
     "bounce",
+    "cradle",
+    "dominoes",
+    "stack",
+    "chain",
+    "cats",
+    "hopper",
+    "drum",
+    "conveyor",
 ];
 
 /// The built-in scene of that name.

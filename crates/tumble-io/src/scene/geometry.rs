@@ -14,7 +14,7 @@ pub const MASS_MODELS: [(&str, MassModel); 3] =
     [("particles", MassModel::Particles), ("shell", MassModel::Shell), ("solid", MassModel::Solid)];
 
 /// The keys that one or another built-in shape has.
-pub const SHAPE_KEYS: [&str; 11] = [
+pub const SHAPE_KEYS: [&str; 12] = [
     "radius",
     "subdivisions",
     "size",
@@ -22,6 +22,7 @@ pub const SHAPE_KEYS: [&str; 11] = [
     "height",
     "segments",
     "tube_radius",
+    "bottom_radius",
     "length",
     "bar_radius",
     "width",
@@ -82,6 +83,14 @@ pub fn shape_scene(reader: &Reader) -> Option<ShapeScene> {
         | Primitive::Knot { radius, tube_radius, segments } => {
             length("radius", radius);
             length("tube_radius", tube_radius);
+            count("segments", segments, 10_000);
+        }
+        Primitive::Tube { radius, bottom_radius, height, thickness, segments } => {
+            length("radius", radius);
+            *bottom_radius = *radius;
+            length("bottom_radius", bottom_radius);
+            length("height", height);
+            length("thickness", thickness);
             count("segments", segments, 10_000);
         }
         Primitive::Dumbbell { radius, length: long, bar_radius, segments } => {

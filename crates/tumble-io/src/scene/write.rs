@@ -193,6 +193,12 @@ fn put_shape(table: &mut Table, shape: &ShapeScene) {
             number("radius", radius);
             number("tube_radius", tube_radius);
         }
+        Primitive::Tube { radius, bottom_radius, height, thickness, .. } => {
+            number("radius", radius);
+            number("bottom_radius", bottom_radius);
+            number("height", height);
+            number("thickness", thickness);
+        }
         Primitive::Dumbbell { radius, length, bar_radius, .. } => {
             number("radius", radius);
             number("length", length);
@@ -215,6 +221,7 @@ fn put_shape(table: &mut Table, shape: &ShapeScene) {
         Primitive::Cylinder { segments, .. }
         | Primitive::Capsule { segments, .. }
         | Primitive::Torus { segments, .. }
+        | Primitive::Tube { segments, .. }
         | Primitive::Knot { segments, .. }
         | Primitive::Dumbbell { segments, .. } => put(table, "segments", i64::from(segments)),
         Primitive::Tetrahedron { .. } => {}

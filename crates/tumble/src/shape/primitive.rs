@@ -58,6 +58,19 @@ pub enum Primitive {
         /// Vertices around the outermost circle, rounded to a multiple of six, at least 3; sets the spacing everywhere.
         segments: u32,
     },
+    /// An open tube or funnel around the y axis, with a wall that things can be in.
+    Tube {
+        /// Inner radius at the upper end (m).
+        radius: f64,
+        /// Inner radius at the lower end (m).
+        bottom_radius: f64,
+        /// Length along y (m).
+        height: f64,
+        /// Thickness of the wall, measured outwards from the axis (m).
+        thickness: f64,
+        /// Vertices around it, rounded to a multiple of six, at least 3; sets the spacing everywhere.
+        segments: u32,
+    },
     /// Two balls on a bar along the x axis, in one closed surface.
     Dumbbell {
         /// Radius of each ball (m).
@@ -103,12 +116,13 @@ pub enum Primitive {
 
 impl Primitive {
     /// The names of all shapes, as scenes and [`Primitive::named`] know them.
-    pub const NAMES: [&str; 9] = [
+    pub const NAMES: [&str; 10] = [
         "sphere",
         "box",
         "cylinder",
         "capsule",
         "torus",
+        "tube",
         "dumbbell",
         "t-handle",
         "tetrahedron",
@@ -131,6 +145,13 @@ impl Primitive {
             "cylinder" => Self::Cylinder { radius: 0.1, height: 0.3, segments: 36 },
             "capsule" => Self::Capsule { radius: 0.075, height: 0.15, segments: 30 },
             "torus" => Self::Torus { radius: 0.1, tube_radius: 0.04, segments: 48 },
+            "tube" => Self::Tube {
+                radius: 0.1,
+                bottom_radius: 0.1,
+                height: 0.2,
+                thickness: 0.02,
+                segments: 48,
+            },
             "dumbbell" => {
                 Self::Dumbbell { radius: 0.06, length: 0.2, bar_radius: 0.02, segments: 24 }
             }
@@ -149,6 +170,7 @@ impl Primitive {
             Self::Cylinder { .. } => "cylinder",
             Self::Capsule { .. } => "capsule",
             Self::Torus { .. } => "torus",
+            Self::Tube { .. } => "tube",
             Self::Dumbbell { .. } => "dumbbell",
             Self::THandle { .. } => "t-handle",
             Self::Tetrahedron { .. } => "tetrahedron",
@@ -174,6 +196,9 @@ impl Primitive {
             }
             Self::Torus { radius, tube_radius, segments } => {
                 revolution::torus(radius, tube_radius, segments)
+            }
+            Self::Tube { radius, bottom_radius, height, thickness, segments } => {
+                revolution::tube([bottom_radius, radius], height, thickness, segments)
             }
             Self::Dumbbell { radius, length, bar_radius, segments } => {
                 revolution::dumbbell(radius, length, bar_radius, segments)

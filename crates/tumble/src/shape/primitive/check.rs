@@ -155,6 +155,12 @@ impl Primitive {
             Self::Torus { radius, tube_radius, .. } | Self::Knot { radius, tube_radius, .. } => {
                 vec![("radius", radius), ("tube_radius", tube_radius)]
             }
+            Self::Tube { radius, bottom_radius, height, thickness, .. } => vec![
+                ("radius", radius),
+                ("bottom_radius", bottom_radius),
+                ("height", height),
+                ("thickness", thickness),
+            ],
             Self::Dumbbell { radius, length, bar_radius, .. } => {
                 vec![("radius", radius), ("length", length), ("bar_radius", bar_radius)]
             }
@@ -202,6 +208,7 @@ impl Primitive {
             Self::Cylinder { segments, .. }
             | Self::Capsule { segments, .. }
             | Self::Torus { segments, .. }
+            | Self::Tube { segments, .. }
             | Self::Dumbbell { segments, .. }
             | Self::Knot { segments, .. } => ("segments", segments, 3),
             Self::Tetrahedron { .. } => ("size", 1, 1),

@@ -45,11 +45,21 @@ fn revolve(
     closes: bool,
 ) -> Result<Mesh, PrimitiveError> {
     let counts: Vec<u32> = profile.iter().map(|&[r, _]| ring_count(r, spacing)).collect();
+    turn(shape, profile, &counts, closes)
+}
+
+/// Turns a profile whose rings have these numbers of vertices.
+fn turn(
+    shape: &'static str,
+    profile: &[Point],
+    counts: &[u32],
+    closes: bool,
+) -> Result<Mesh, PrimitiveError> {
     affordable(shape, counts.iter().map(|&n| f64::from(n)).sum())?;
 
     let mut mesh = Mesh::default();
     let mut starts = Vec::with_capacity(profile.len());
-    for (&[r, y], &count) in profile.iter().zip(&counts) {
+    for (&[r, y], &count) in profile.iter().zip(counts) {
         starts.push(mesh.vertices.len() as u32);
         for k in 0..count {
             // from z towards x is counter-clockwise about +y
@@ -159,6 +169,37 @@ pub(super) fn torus(radius: f64, tube_radius: f64, segments: u32) -> Result<Mesh
         })
         .collect();
     revolve(shape, &profile, spacing, true)
+}
+
+/// A tube around y, of inner radius `[bottom, top]` at its ends.
+///
+/// All rings have the same number of vertices: the inner and the outer surface are then alike and cannot cut each other,
+/// however thin the wall.
+pub(super) fn tube(
+    [bottom, top]: [f64; 2],
+    height: f64,
+    thickness: f64,
+    segments: u32,
+) -> Result<Mesh, PrimitiveError> {
+    let shape = "tube";
+    let widest = bottom.max(top) + thickness;
+    let spacing = spacing_of(segments, widest);
+    // height at which the middle of a wall of this slope is balanced: ∫ r y dA = 0
+    let middle = |radius: f64| radius + 0.5 * thickness;
+    let rise = height * (middle(top) - middle(bottom)) / (6.0 * (middle(top) + middle(bottom)));
+    let (low, high) = (-0.5 * height - rise, 0.5 * height - rise);
+    let corners = [[bottom + thickness, low], [top + thickness, high], [top, high], [bottom, low]];
+    let mut profile = Vec::new();
+    for (i, &[r, y]) in corners.iter().enumerate() {
+        let [next_r, next_y] = corners[(i + 1) % 4];
+        let n = parts(shape, libm::hypot(next_r - r, next_y - y), spacing)?;
+        profile.extend((0..n).map(|k| {
+            let part = f64::from(k) / f64::from(n);
+            [r + (next_r - r) * part, y + (next_y - y) * part]
+        }));
+    }
+    let counts = vec![ring_count(widest, spacing); profile.len()];
+    turn(shape, &profile, &counts, true)
 }
 
 /// Two balls on a bar along x.

@@ -19,6 +19,7 @@ fn at(shape: Primitive, n: u32) -> Primitive {
         | Primitive::Cylinder { segments: r, .. }
         | Primitive::Capsule { segments: r, .. }
         | Primitive::Torus { segments: r, .. }
+        | Primitive::Tube { segments: r, .. }
         | Primitive::Dumbbell { segments: r, .. }
         | Primitive::Knot { segments: r, .. } => *r = n,
         Primitive::Tetrahedron { .. } => {}
@@ -64,7 +65,10 @@ fn all_meshes_are_closed_manifolds_wound_outwards_at_every_resolution() {
             assert_eq!(found.ignored_triangles, 0);
             // Euler: V - E + F = 2 - 2 genus, with E = 3F/2; also says that no vertex is there twice
             let euler = mesh.vertices.len() as i64 - mesh.triangles.len() as i64 / 2;
-            let round = matches!(shape, Primitive::Torus { .. } | Primitive::Knot { .. });
+            let round = matches!(
+                shape,
+                Primitive::Torus { .. } | Primitive::Tube { .. } | Primitive::Knot { .. }
+            );
             assert_eq!(euler, if round { 0 } else { 2 }, "{} at {n}", shape.name());
             assert!(signed_volume(&mesh) > 0.0, "{} at {n}", shape.name());
         }
@@ -141,6 +145,17 @@ fn round_shapes_approach_their_volume_with_the_square_of_the_resolution() {
         (
             Primitive::Torus { radius: 0.1, tube_radius: 0.04, segments: 0 },
             2.0 * PI * PI * 0.1 * 0.04 * 0.04,
+        ),
+        (
+            // Pappus: section times the way of its middle, for a frustum too
+            Primitive::Tube {
+                radius: 0.1,
+                bottom_radius: 0.04,
+                height: h,
+                thickness: 0.02,
+                segments: 0,
+            },
+            0.02 * h * 2.0 * PI * 0.08,
         ),
         (
             Primitive::Dumbbell { radius: r, length: h, bar_radius: b, segments: 0 },
