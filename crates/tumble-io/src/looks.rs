@@ -41,7 +41,7 @@ pub(crate) const DRIVEN: [f32; 3] = [150.0, 154.0, 160.0];
 /// Balls about the places; `None` of very many, and where there is no ball of that radius.
 fn spheres(places: impl ExactSizeIterator<Item = DVec3>, radius: f64) -> Option<Mesh> {
     let subdivisions = match places.len() {
-        0..=FINE => 2,
+        n if n <= FINE => 2,
         ..=COARSE => 1,
         _ => return None,
     };

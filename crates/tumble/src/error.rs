@@ -48,7 +48,7 @@ pub enum BuildError {
         /// Name of the body.
         body: String,
         /// What is wrong with the mesh.
-        error: SurfaceError,
+        error: Box<SurfaceError>,
     },
     /// Two bodies start in each other.
     Overlap {

@@ -48,7 +48,9 @@ impl Solids {
         let make = || SignedDistance::new(shape.surface()).map(Arc::new);
         match self.0.entry(Arc::as_ptr(shape)).or_insert_with(make) {
             Ok(solid) => Ok(Some(Arc::clone(solid))),
-            Err(error) => Err(BuildError::Surface { body: body.to_owned(), error: error.clone() }),
+            Err(error) => {
+                Err(BuildError::Surface { body: body.to_owned(), error: Box::new(error.clone()) })
+            }
         }
     }
 }

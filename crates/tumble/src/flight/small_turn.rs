@@ -86,7 +86,7 @@ pub(super) fn even_turn(angle: DVec3) -> Option<Turn> {
 #[inline(always)]
 fn sine_cosine(square: f64) -> Option<(f64, f64)> {
     // not `>`: NaN is not small
-    if !(square <= SMALL) {
+    if square.is_nan() || square > SMALL {
         return None;
     }
     let a = square;

@@ -29,7 +29,7 @@ pub(super) struct Pair {
     pub quiet: f64,
     /// How far apart two particles touch, or a particle and a mesh or wall (m).
     pub reach: f64,
-    /// How much farther apart they were listed (m).
+    /// How much farther apart they are looked for (m).
     pub margin: f64,
     /// How far one may come against the other in a step without passing through it (m).
     pub limit: f64,
@@ -52,6 +52,9 @@ pub(super) struct Point {
 pub(super) struct Near {
     pub pairs: Vec<Pair>,
     pub points: Vec<Point>,
+    /// Those of the list before.
+    old_pairs: Vec<Pair>,
+    old_points: Vec<Point>,
     /// Room for slots of particles.
     slots: [Vec<u32>; 2],
 }
@@ -89,18 +92,21 @@ pub(super) fn radius(body: &BodyModel) -> f64 {
 }
 
 impl Lists {
-    /// Makes all lists for bodies at `poses`, which have travelled nowhere yet.
+    /// Makes all lists for bodies at `poses`. What the old ones know of particles and meshes goes on.
     pub fn make(&mut self, model: &Model, poses: &mut [Pose]) {
         let bodies = &model.bodies;
         self.balls.clear();
         for (body, pose) in bodies.iter().zip(&mut *poses) {
             pose.skin = skin(body, pose);
+            pose.until = pose.travel + pose.skin;
             let reach = body.extent + pose.skin;
             self.balls.push(Ball { centre: pose.position, reach, active: body.is_free() });
         }
         let (pairs, poses) = (self.grid.pairs(&self.balls), &*poses);
         self.chunks.resize_with(bodies.len().div_ceil(CHUNK), Near::default);
         parallel::each(&mut self.chunks, |index, near| {
+            std::mem::swap(&mut near.pairs, &mut near.old_pairs);
+            std::mem::swap(&mut near.points, &mut near.old_points);
             near.pairs.clear();
             near.points.clear();
             let first = (index * CHUNK) as u32;
@@ -193,11 +199,12 @@ impl Near {
             match kind {
                 ContactKind::Wall => {}
                 ContactKind::Spheres => self.list_spheres(a, b),
-                ContactKind::FirstInSecond => self.list_particles(a, b),
-                ContactKind::SecondInFirst => self.list_particles(b, a),
+                ContactKind::FirstInSecond => self.list_particles(a, b, (first, second, kind)),
+                ContactKind::SecondInFirst => self.list_particles(b, a, (first, second, kind)),
             }
             let (law, reach) = (law(a.body, b.body, kind), reach(a.body, b.body, kind));
-            let margin = a.pose.skin + b.pose.skin;
+            // a mesh is asked farther out, so that it need not be asked again so soon
+            let margin = (a.pose.skin + b.pose.skin).max(2.0 * grain(a.body).min(grain(b.body)));
             let limit = limit(a.body, b.body, kind);
             self.add(Pair {
                 first,
@@ -226,6 +233,7 @@ impl Near {
     fn list_spheres(&mut self, a: Side, b: Side) {
         let margin = a.pose.skin + b.pose.skin;
         let reach = radius(a.body) + radius(b.body);
+        let travel = a.pose.travel + b.pose.travel;
         let [mut ours, mut theirs] = std::mem::take(&mut self.slots);
         a.list_near(b, reach + margin, &mut ours);
         b.list_near(a, reach + margin, &mut theirs);
@@ -234,15 +242,16 @@ impl Near {
             for &other in &theirs {
                 let gap = place.distance(b.pose.place(b.body, other)) - reach;
                 if gap < margin {
-                    self.points.push(Point { particle, other, quiet: gap.max(0.0) });
+                    self.points.push(Point { particle, other, quiet: travel + gap });
                 }
             }
         }
         self.slots = [ours, theirs];
     }
 
-    /// Particles of `a` that are near the mesh of `b`.
-    fn list_particles(&mut self, a: Side, b: Side) {
+    /// Particles of `a` that are near the mesh of `b`: by leaves of the tree, since what is known of each particle from the
+    /// list before is worth more than a look at it now.
+    fn list_particles(&mut self, a: Side, b: Side, key: (u32, u32, ContactKind)) {
         let Some(solid) = &b.body.solid else { return };
         let (margin, reach) = (a.pose.skin + b.pose.skin, radius(a.body));
         // places of the frame of `a` in the frame of `b`
@@ -250,20 +259,34 @@ impl Near {
         let way = b.pose.rotation.transpose() * (a.pose.position - b.pose.position);
         let [mut slots, other] = std::mem::take(&mut self.slots);
         slots.clear();
-        let particles = a.body.shape.particles();
         let may_touch =
             |centre, radius| !solid.outside_ball(way + turn * centre, radius + reach + margin);
-        particles.list_where(may_touch, &mut slots);
-        let mut hint = 0;
+        a.body.shape.particles().list_where(may_touch, &mut slots);
+        let old = points_of(&self.old_pairs, &self.old_points, key);
+        let mut old = old.iter().copied().peekable();
         for &particle in &slots {
-            let place = way + turn * particles.at(particle);
-            if let Some(nearest) = solid.query(place, hint, reach + margin) {
-                hint = nearest.triangle;
-                let quiet = (nearest.distance - reach).max(0.0);
-                self.points.push(Point { particle, other: hint, quiet });
-            }
+            while old.next_if(|point| point.particle < particle).is_some() {}
+            let known = old.next_if(|point| point.particle == particle);
+            // who is not known is looked at soon
+            self.points.push(known.unwrap_or(Point { particle, other: 0, quiet: 0.0 }));
         }
         self.slots = [slots, other];
+    }
+}
+
+/// The points of a pair in a list.
+fn points_of<'a>(
+    pairs: &[Pair],
+    points: &'a [Point],
+    (first, second, kind): (u32, u32, ContactKind),
+) -> &'a [Point] {
+    let order = |first: u32, second: u32, kind: ContactKind| {
+        (first, kind != ContactKind::Wall, second, kind)
+    };
+    let of_pair = |pair: &Pair| order(pair.first, pair.second, pair.kind);
+    match pairs.binary_search_by_key(&order(first, second, kind), of_pair) {
+        Ok(found) => &points[pairs[found].start as usize..pairs[found].end as usize],
+        Err(_) => &[],
     }
 }
 

@@ -70,11 +70,13 @@ impl Meeting {
                 }
             });
         }
-        let hold = || self.poses.iter().all(|pose| pose.travel <= pose.skin);
-        if !known || !hold() {
+        if !known {
             self.poses.clear();
             let states = state.bodies.iter().enumerate();
             self.poses.extend(states.map(|(index, state)| Pose::new(model, index, state)));
+            self.lists = Lists::default();
+        }
+        if !known || self.poses.iter().any(|pose| pose.travel > pose.until) {
             self.lists.make(model, &mut self.poses);
         }
     }

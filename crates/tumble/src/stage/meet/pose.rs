@@ -17,10 +17,12 @@ pub(super) struct Pose {
     /// Velocity of the surface along itself (m/s).
     pub belt: DVec3,
     orientation: DQuat,
-    /// No point of the body has come farther than this (m) since the lists were made.
+    /// No point of the body has come farther than this (m) since it was first seen.
     pub travel: f64,
-    /// How far it may come before they are made anew (m).
+    /// How far it may come before the lists are made anew (m).
     pub skin: f64,
+    /// What its travel may be until then (m).
+    pub until: f64,
     /// No point of the body comes farther than this in a step (m).
     pub way: f64,
 }
@@ -58,6 +60,7 @@ impl Pose {
             orientation: state.orientation,
             travel: rounding(body, state),
             skin: 0.0,
+            until: 0.0,
             way: model.dt * (state.velocity.length() + omega.length() * body.extent),
         }
     }
@@ -71,7 +74,7 @@ impl Pose {
             + 2.0 * body.extent * DVec3::new(turn.x, turn.y, turn.z).length();
         // what rounding may hide of the way, and of places that it is held against
         let travel = self.travel + way * (1.0 + 1e-9) + rounding(body, state);
-        Self { travel, skin: self.skin, ..Self::new(model, index, state) }
+        Self { travel, skin: self.skin, until: self.until, ..Self::new(model, index, state) }
     }
 
     /// The place of a particle.
