@@ -44,6 +44,7 @@ fn defaults_have_the_vertex_counts_that_the_docs_promise() {
         ("cylinder", 830),
         ("capsule", 572),
         ("torus", 474),
+        ("tube", 1344),
         ("dumbbell", 404),
         ("t-handle", 154),
         ("tetrahedron", 4),
