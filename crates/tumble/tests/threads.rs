@@ -130,7 +130,7 @@ fn what_is_forgotten_at_random_changes_no_bit() {
     let mut dice = Dice(99);
     for step in 0..2500 {
         kept.step().unwrap();
-        if dice.roll() % 7 == 0 {
+        if dice.roll().is_multiple_of(7) {
             forgetful.forget_scratch();
         }
         forgetful.step().unwrap();
