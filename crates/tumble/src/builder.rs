@@ -378,7 +378,7 @@ impl WorldBuilder {
             inertia,
             inverse_inertia,
             inverse_moments: DVec3::from_array(inverse_moments),
-            drag_modes: DragModes::of(&body.shape, mass),
+            drag_modes: DragModes::of(&body.shape, mass).map(Box::new),
             pair_material: PairMaterial::new(
                 &body.material.over(self.material).at_area(area),
                 if is_free { 1.0 / mass } else { 0.0 },

@@ -70,7 +70,7 @@ pub struct BodyModel {
     /// The principal moments of `inverse_inertia`, in the order of the shape's principal axes.
     pub inverse_moments: DVec3,
     /// How drag slows the body where its mass is not carried by equal particles.
-    pub drag_modes: Option<DragModes>,
+    pub drag_modes: Option<Box<DragModes>>,
     /// The contact law against each wall, in the order of [`Model::walls`].
     pub contacts: Vec<ContactLaw>,
     /// Whether any of these contacts has friction.

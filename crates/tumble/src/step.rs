@@ -1,6 +1,6 @@
 //! The step, as a list of stages.
 
-use crate::{Integrator, Model, Scratch, State, StepError, stage};
+use crate::{Integrator, Model, Scratch, State, StepError, parallel, stage};
 
 /// Advances `state` by one step of `model.dt`.
 ///
@@ -10,6 +10,10 @@ use crate::{Integrator, Model, Scratch, State, StepError, stage};
 /// # Errors
 /// [`StepError`] when the new state cannot be trusted.
 pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(), StepError> {
+    parallel::run(model.bodies.len(), || stages(model, state, scratch))
+}
+
+fn stages(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(), StepError> {
     let h = model.dt;
     scratch.fit(model.bodies.len());
     match (model.integrator, model.energy_tolerance) {

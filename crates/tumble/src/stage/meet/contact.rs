@@ -122,9 +122,9 @@ impl Contact {
             };
             let turned = self.before + n.cross(self.before) * (spin * h);
             let along = turned - n * turned.dot(n);
-            let length = along.length();
+            let (old, new) = (self.before.length_squared(), along.length_squared());
             // a normal that turned by a right angle leaves nothing to keep
-            let scale = if length > 0.0 { self.before.length() / length } else { 0.0 };
+            let scale = if new > 0.0 { (old / new).sqrt() } else { 0.0 };
             self.before = along * scale;
         }
         // spheres turn with their bodies; of a mesh, the place where the other is counts

@@ -267,7 +267,7 @@ impl<'a> Sides<'a> {
                 let b = &model.bodies[pair.second as usize];
                 let place = p.place(a, point.particle);
                 let apart = place - q.place(b, point.other);
-                let distance = apart.length();
+                let distance = apart.length_squared().sqrt();
                 let depth = pair.reach - distance;
                 if depth <= 0.0 {
                     return Err(-depth);
