@@ -22,11 +22,11 @@ const GOLDEN: &[(&str, &str)] = &[
     ("bounce", "5a31c4305bd738cbe5e3ce90668a2d0c"),
     ("cradle", "a270b7c451d67f167046f2674db036e8"),
     ("dominoes", "92abd8debae3e99409c4ae50b30c13d2"),
-    ("stack", "8c2f6c0a963f1a078c65d605ced6b615"),
+    ("stack", "45bf2aa35ee33a68387a30935c04e6e7"),
     ("chain", "787cabe1315d4e62c19900796d9a4bb2"),
     ("cats", "44eb90ccb827df45f1ce9f033bce32d0"),
-    ("hopper", "d585c8dc408d1c53486b45de8390d2bd"),
-    ("drum", "d72583c8fd934cbc997e9f82321d7813"),
+    ("hopper", "b31a1d2bcd5b69a9a456be63c726aceb"),
+    ("drum", "b7a6bccea27df9685fafab57e2bf7d3a"),
     ("conveyor", "b46d2f8130de83e8e95598fa8c15a450"),
 ];
 
