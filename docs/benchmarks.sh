@@ -9,7 +9,7 @@ cargo build --release --locked
 cat >"$page" <<'PAGE'
 # Benchmarks
 
-Made by `docs/benchmarks.sh`, which runs `cargo bench` and `bench/bouncing/run.sh`. Times are those of one machine on one day; ratios
+Made by `docs/benchmarks.sh`, which runs `cargo bench`, `bench/bouncing/run.sh` and `bench/heap/run.sh`. Times are those of one machine on one day; ratios
 come from one run, in which the candidates take turns, and say more.
 
 The plain loop does the basic system for every particle: turn it, its velocity, gravity, drag, five walls with springs, force and torque. *Compiled*
@@ -24,6 +24,9 @@ cargo bench --locked -p tumble-bench --bench speed >>"$page"
     printf '\n## Bouncing, beside MuJoCo and Rapier\n\n'
     printf 'One body of 40,000 points in a closed box; [bench/README.md](../bench/README.md) has the settings that make it fair.\n\n'
     TUMBLE=$PWD/target/release/tumble bench/bouncing/run.sh
+    printf '\n## A heap of clumps, beside LAMMPS\n\n'
+    printf 'Clumps of eight spheres fall into an open box; [bench/README.md](../bench/README.md) says how. One core each.\n\n'
+    TUMBLE=$PWD/target/release/tumble bench/heap/run.sh
 } >>"$page"
 mv "$page" docs/benchmarks.md
 chmod 644 docs/benchmarks.md
