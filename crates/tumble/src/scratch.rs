@@ -94,7 +94,7 @@ impl BodyForces {
         self.gravity + self.drag + self.contact()
     }
 
-    /// What the walls do, by spring, dashpot and friction together.
+    /// What walls and other bodies do, by spring, dashpot and friction together.
     pub fn contact(&self) -> Wrench {
         self.spring + self.dashpot + self.friction
     }

@@ -118,7 +118,7 @@ impl World {
         (0..self.body_count()).map(|index| self.body(index))
     }
 
-    /// What the walls did to one body in the latest step, by spring, dashpot and friction together.
+    /// What walls and other bodies did to one body in the latest step, by spring, dashpot and friction together.
     /// Zero before the first step, and for a body that touched nothing.
     pub fn contact_wrench(&self, index: usize) -> Wrench {
         self.scratch.forces.get(index).map_or_else(Wrench::default, BodyForces::contact)
