@@ -32,6 +32,7 @@ fn stages(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(),
             stage::reach(model, state, scratch, h);
             stage::cruise(model, state, scratch, h);
             stage::refine(model, state, scratch, tolerance); // the rest of the above, in parts
+            stage::carry(model, state, 0.0, h);
         }
         (Integrator::Euler, _) => {
             stage::gravity(model, scratch); // 2

@@ -46,11 +46,13 @@ impl World {
     }
 
     /// Pulls a particle towards a place from the next step on, or lets go. Returns whether there is such a
-    /// particle, and such a place; if not, nothing changes.
+    /// particle of a body that can be moved, and such a place; if not, nothing changes.
     pub fn pull(&mut self, hand: Option<Pull>) -> bool {
         let fits = hand.is_none_or(|Pull { body, particle, target }| {
             let body = self.model.bodies.get(body);
-            body.is_some_and(|body| particle < body.shape.particles().len()) && target.is_finite()
+            let there =
+                |body: &BodyModel| body.is_free() && particle < body.shape.particles().len();
+            body.is_some_and(there) && target.is_finite()
         });
         if fits {
             self.pull = hand;

@@ -4,7 +4,9 @@
 
 use std::f64::consts::TAU;
 
-use tumble::{Body, DVec3, Motion, Oscillation, Prescribed, Shape, World};
+use tumble::{
+    Body, DVec3, Integrator, Motion, Oscillation, Prescribed, Pull, Shape, WallPlane, World,
+};
 
 #[test]
 fn an_oscillation_swings_about_the_path_it_is_laid_over() {
@@ -26,5 +28,36 @@ fn an_oscillation_swings_about_the_path_it_is_laid_over() {
         assert!((body.position() - start - place).length() < 1e-12, "place at {time}");
         assert!((body.velocity() - velocity).length() < 1e-11, "velocity at {time}");
         world.step().unwrap();
+    }
+}
+
+/// It once fell like any other where nothing could meet it, or where steps were refined.
+#[test]
+fn what_is_held_ignores_walls_weight_and_hands_also_where_nothing_meets_it() {
+    for tolerance in [None, Some(1e-6)] {
+        for integrator in [Integrator::Splitting, Integrator::Euler] {
+            if tolerance.is_some() && integrator == Integrator::Euler {
+                continue;
+            }
+            let shape = Shape::of_particles(&[DVec3::ZERO, DVec3::X, DVec3::Z]).unwrap();
+            let body = Body::new(shape).position(DVec3::Y * 0.1).velocity(DVec3::NEG_Y);
+            let held = body.motion(Motion::Prescribed(Prescribed::default()));
+            let mut world = World::builder()
+                .dt(1e-3)
+                .integrator(integrator)
+                .energy_tolerance(tolerance)
+                .wall(WallPlane { normal: DVec3::Y, offset: 0.0 })
+                .body(held)
+                .build()
+                .unwrap();
+            let start = world.energy().total();
+            assert!(!world.pull(Some(Pull { body: 0, particle: 0, target: DVec3::ONE })));
+            for _ in 0..500 {
+                world.step().unwrap();
+            }
+            assert!((world.body(0).position().y + 0.4).abs() < 1e-12);
+            assert_eq!(world.body(0).velocity(), DVec3::NEG_Y);
+            assert_eq!(world.energy().total(), start);
+        }
     }
 }

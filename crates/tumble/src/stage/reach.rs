@@ -13,6 +13,13 @@ pub fn reach(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
             scratch.near[index] = body.is_free();
             continue;
         }
+        if !body.is_free() {
+            // walls and forces do nothing to it
+            scratch.forces[index].clear_contact();
+            scratch.springs[index].clear();
+            scratch.near[index] = false;
+            continue;
+        }
         let body_state = &state.bodies[index];
         let speed = if body.drag_modes.is_some() {
             let place = super::Placed::new(body, body_state);

@@ -44,7 +44,29 @@ pub(super) fn at_one_place(model: &Model, state: &State) -> Vec<Overlap> {
             && a.surface == b.surface
             && (a.is_free() || b.is_free())
     });
-    pairs.map(|pair| (pair[0] as u32, pair[1] as u32, thickness(&model.bodies[pair[0]]))).collect()
+    let pair = |pair: &[usize]| (pair[0] as u32, pair[1] as u32, thickness(&model.bodies[pair[0]]));
+    let mut found: Vec<Overlap> = pairs.map(pair).collect();
+    for crowd in crowds(model, state) {
+        found.extend(crowd.windows(2).take(MOST).map(pair));
+    }
+    found
+}
+
+/// More bodies than this with their centres within a tenth of their size have no room there.
+const CROWD: usize = 1000;
+
+/// Bodies in crowds, however they are turned: their pairs would fill the memory.
+fn crowds(model: &Model, state: &State) -> Vec<Vec<usize>> {
+    let cell = |index: usize| {
+        let size = list::grain(&model.bodies[index]);
+        // far away, or of no size, cells are as coarse as numbers are
+        (state.bodies[index].position / size).to_array().map(|x| x.floor() as i64)
+    };
+    let solid = |&body: &usize| model.bodies[body].surface != Surface::None;
+    let mut cells: Vec<_> = (0..model.bodies.len()).filter(solid).map(|i| (cell(i), i)).collect();
+    cells.sort_unstable();
+    let crowds = cells.chunk_by(|a, b| a.0 == b.0).filter(|cell| cell.len() > CROWD);
+    crowds.map(|cell| cell.iter().map(|&(_, index)| index).collect()).collect()
 }
 
 /// How thick a body is (m).

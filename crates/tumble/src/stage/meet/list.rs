@@ -329,7 +329,10 @@ fn kinds(first: &BodyModel, second: &BodyModel) -> &'static [ContactKind] {
 
 /// The law of one kind of contact between two bodies.
 pub(super) fn law(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> ContactLaw {
-    if kind == ContactKind::SecondInFirst {
+    // of two particles, that of the body with more of them shares its mass with the others
+    let many = |body: &BodyModel| body.pair_material.share;
+    let turned = kind == ContactKind::Spheres && many(second) > many(first);
+    if turned || kind == ContactKind::SecondInFirst {
         second.pair_material.law(&first.pair_material)
     } else {
         first.pair_material.law(&second.pair_material)

@@ -47,7 +47,9 @@ pub fn meet(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     let meeting = &mut scratch.meeting;
     meeting.place(model, state);
     meeting.find(model, &state.pair_springs, h);
-    let is_damped = |body: &BodyModel| body.pair_material.is_damped();
+    // spheres meet walls by another law
+    let is_damped =
+        |body: &BodyModel| body.pair_material.is_damped() || (body.has_spheres() && body.is_damped);
     if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
         meeting.push::<true>();
         meeting.gather::<true>();

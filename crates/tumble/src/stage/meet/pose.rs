@@ -74,6 +74,7 @@ impl Pose {
             + 2.0 * body.extent * length(DVec3::new(turn.x, turn.y, turn.z));
         // what rounding may hide of the way, and of places that it is held against
         let travel = self.travel + way * (1.0 + 1e-9) + rounding(body, state);
+        let travel = travel * (1.0 + 4.0 * f64::EPSILON);
         Self { travel, skin: self.skin, until: self.until, ..Self::new(model, index, state) }
     }
 
