@@ -329,7 +329,7 @@ impl WorldBuilder {
         body: &Body,
         shared: &mut Shared,
     ) -> Result<BodyModel, BuildError> {
-        if let Some((quantity, value, allowed)) = check_body(body) {
+        if let Some((quantity, value, allowed)) = check_body(body, self.dt) {
             return Err(BuildError::Body { body: name, quantity, value, allowed });
         }
         let (quantity, value, mass) = match body.mass {
@@ -358,6 +358,16 @@ impl WorldBuilder {
         let (walls, own) = self.materials(body);
         let per_area = |material: &Material| material.collision_stiffness_per_area;
         let shape = match walls.iter().chain(&own).find_map(per_area) {
+            Some(stiffness) if has_spheres => {
+                let allowed = "left out where a body has spheres, which touch at points: give it a \
+                               `collision_stiffness` of its own";
+                return Err(BuildError::Body {
+                    body: name,
+                    quantity: "collision_stiffness_per_area",
+                    value: stiffness.to_string(),
+                    allowed,
+                });
+            }
             Some(stiffness) => shared.twins.of(&body.shape).map_err(|error| BuildError::Body {
                 body: name.clone(),
                 quantity: "collision_stiffness_per_area",
@@ -429,7 +439,7 @@ fn smallest_gap(walls: &[(WallPlane, MaterialOverride)]) -> Option<f64> {
 }
 
 /// Numbers of the bodies' surfaces and motions.
-fn check_body(body: &Body) -> Option<(&'static str, String, &'static str)> {
+fn check_body(body: &Body, dt: f64) -> Option<(&'static str, String, &'static str)> {
     if let Surface::Spheres { radius } = body.surface
         && !(radius > 0.0 && radius.is_finite())
     {
@@ -444,6 +454,10 @@ fn check_body(body: &Body) -> Option<(&'static str, String, &'static str)> {
     if !(swing.amplitude.is_finite() && swing.frequency.is_finite() && swing.phase.is_finite()) {
         let allowed = "a finite amplitude (m), frequency (Hz) and phase (rad)";
         return Some(("oscillation", format!("{swing:?}"), allowed));
+    }
+    if swing.frequency.abs() * dt > 0.1 {
+        let allowed = "of a frequency that gives a swing at least ten steps of `dt`";
+        return Some(("oscillation", format!("of {} Hz", swing.frequency), allowed));
     }
     None
 }
@@ -503,6 +517,13 @@ fn body_state(model: &BodyModel, body: &Body) -> Result<BodyState, BuildError> {
         rotation * (model.inertia * (rotation.transpose() * body.angular_velocity));
     if !angular_momentum.is_finite() {
         return refuse("initial_angular_velocity", &body.angular_velocity, three);
+    }
+    // what moves by forces is let off: nothing turns it about such an axis
+    let lost = model.angular_velocity(rotation, angular_momentum) - body.angular_velocity;
+    if !model.is_free() && lost.length() > 1e-9 * body.angular_velocity.length() {
+        let allowed =
+            "about an axis about which the body has inertia; mass_model = \"solid\" gives it some";
+        return refuse("initial_angular_velocity", &body.angular_velocity, allowed);
     }
     let swing = match &body.motion {
         Motion::Prescribed(Prescribed { oscillation: Some(swing), .. }) => swing.at(0.0).1,

@@ -61,3 +61,22 @@ fn what_is_held_ignores_walls_weight_and_hands_also_where_nothing_meets_it() {
         }
     }
 }
+
+#[test]
+fn what_cannot_be_held_so_is_refused() {
+    let held = |places: &[DVec3], swing: Option<Oscillation>| {
+        let given = Prescribed { oscillation: swing, ..Prescribed::default() };
+        let body = Body::new(Shape::of_particles(places).unwrap());
+        body.motion(Motion::Prescribed(given)).angular_velocity(DVec3::X * 3.0)
+    };
+    let refusal = |body: Body| {
+        let world = World::builder().dt(1e-3).body(body).build();
+        world.err().map(|errors| errors.to_string()).unwrap_or_default()
+    };
+    let swing = |frequency| Some(Oscillation { amplitude: DVec3::Y * 1e-3, frequency, phase: 0.0 });
+    // a needle along its axis has no inertia to turn by
+    assert!(refusal(held(&[DVec3::ZERO, DVec3::X], None)).contains("has inertia"));
+    let square = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::X + DVec3::Y];
+    assert!(refusal(held(&square, swing(1000.0))).contains("ten steps"));
+    assert_eq!(refusal(held(&square, swing(50.0))), "");
+}
