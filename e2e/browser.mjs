@@ -20,7 +20,7 @@ export function check(what, holds, detail = '') {
 // waits for a condition inside the page, at most 15 s; by the clock, as a slow picture would make the asking slow
 export async function until(what, page, condition, argument) {
   try {
-    await page.waitForFunction(condition, argument, { timeout: 15000, polling: 100 });
+    await page.waitForFunction(condition, argument, { timeout: 60000, polling: 100 });
     check(what, true);
   } catch (error) {
     check(what, false, error.message.split('\n')[0]);

@@ -12,7 +12,7 @@ import { execFileSync, spawn } from 'node:child_process';
 import { check, finish, launch, open, quiet, until } from './browser.mjs';
 
 const [, , tumble, pictures] = process.argv;
-const LONGEST = 15000;
+const LONGEST = 60000;
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'tumble-live-'));
 // small pictures: the processor draws them
 const viewport = { width: 1000, height: 660 };
