@@ -78,10 +78,11 @@ pub(crate) fn first_body<T: Send>(
     })
 }
 
-/// Calls `work` with every body and its index, and adds up what it returns.
+/// Calls `work` with every body and its index, and adds up what it returns. `sums` is room for the sums of chunks.
 pub(crate) fn tally_bodies(
     tally: &mut Tally,
     bodies: &mut [BodyState],
+    sums: &mut Vec<Tally>,
     work: impl Fn(usize, &mut BodyState) -> Tally + Sync,
 ) {
     let each = |tally: &mut Tally, first: usize, bodies: &mut [BodyState]| {
@@ -100,8 +101,8 @@ pub(crate) fn tally_bodies(
     if is_alone() {
         return bodies.chunks_mut(CHUNK).enumerate().map(of_chunk).for_each(|sum| *tally += sum);
     }
-    let sums: Vec<Tally> = bodies.par_chunks_mut(CHUNK).enumerate().map(of_chunk).collect();
-    sums.into_iter().for_each(|sum| *tally += sum);
+    bodies.par_chunks_mut(CHUNK).enumerate().map(of_chunk).collect_into_vec(sums);
+    sums.iter().for_each(|&sum| *tally += sum);
 }
 
 /// Calls `work` with the index of the first body of each chunk and the chunk of `items`, one of which belongs to each body.

@@ -1,5 +1,6 @@
 //! Whether a state that comes from outside is one that a model can go on from.
 
+use crate::state::{PairOrder, pair_order};
 use crate::{BodyModel, ContactKind, FrictionSpring, Model, PairSpring, State};
 
 /// Why a state does not fit a model.
@@ -169,7 +170,7 @@ fn fitting_pair_springs(model: &Model, springs: &[PairSpring]) -> Result<(), Sta
 }
 
 /// By what springs between bodies are sorted; `None` for one that cannot be.
-fn pair_key(model: &Model, spring: &PairSpring) -> Option<(u32, bool, u32, ContactKind, u32, u32)> {
+fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)> {
     let PairSpring { first, second, kind, particle, other, .. } = *spring;
     let body = |index: u32| model.bodies.get(index as usize);
     let slot = |index: u32, particle: u32| {
@@ -195,5 +196,5 @@ fn pair_key(model: &Model, spring: &PairSpring) -> Option<(u32, bool, u32, Conta
             }
         }
     };
-    is_other.then_some((first, kind != ContactKind::Wall, second, kind, particle, other))
+    is_other.then_some((pair_order(first, second, kind), particle, other))
 }

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use crate::FrictionSpring;
 use crate::parallel::CHUNK;
 use crate::stage::{Meeting, Touching};
+use crate::{FrictionSpring, Tally};
 
 /// Room for what is derived within a step. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -17,6 +17,8 @@ pub struct Scratch {
     pub springs: Vec<Vec<FrictionSpring>>,
     /// Particles of one body in contact, while they are looked at; one entry a chunk of bodies.
     pub(crate) touching: Vec<Touching>,
+    /// What chunks of bodies add to the tally.
+    pub(crate) tallies: Vec<Tally>,
     /// Contacts between bodies.
     pub(crate) meeting: Meeting,
     /// Friction springs of one body to go back to.

@@ -92,6 +92,14 @@ pub struct PairSpring {
     pub stretch: DVec3,
 }
 
+/// By what pairs are sorted: the first body, its walls before the other bodies, the second body, the kind.
+pub(crate) type PairOrder = (u32, bool, u32, ContactKind);
+
+/// The place of a pair among all pairs.
+pub(crate) fn pair_order(first: u32, second: u32, kind: ContactKind) -> PairOrder {
+    (first, kind != ContactKind::Wall, second, kind)
+}
+
 /// What touches what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]

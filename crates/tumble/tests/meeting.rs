@@ -101,7 +101,6 @@ fn every_joule_is_accounted_for() {
         let energy = world.energy();
         assert!(energy.dashpot > 0.05 * start && energy.slip > 0.0, "{energy:?}");
         let residual = (energy.total() - start).abs() / start;
-        println!("{surface:?} {residual:e}");
         assert!(residual < 5e-4, "{surface:?}: residual {residual:e}, {energy:?}");
     }
 }
@@ -209,7 +208,6 @@ fn a_static_box_is_a_wall() {
         };
         let ((x, v), (y, u)) = (fall(true), fall(false));
         let apart = (x - y).length() + (v - u).length();
-        println!("{e} {friction} {apart:e}");
         assert!(apart < bound, "e = {e}, μ = {friction}: {apart:e}");
     }
 }

@@ -532,11 +532,10 @@ fn bodies_in_each_other_without_a_particle_in_the_other_are_refused() {
 #[test]
 fn a_crowd_nearly_at_one_place_is_refused_soon() {
     let mut builder = World::builder().dt(1e-4);
-    let clump = std::sync::Arc::new(
-        tumble::Shape::of_particles(&[DVec3::X * 0.05, DVec3::X * -0.05]).unwrap(),
-    );
+    let clump =
+        std::sync::Arc::new(Shape::of_particles(&[DVec3::X * 0.05, DVec3::X * -0.05]).unwrap());
     for index in 0..20_000 {
-        let turn = tumble::DQuat::from_rotation_y(f64::from(index) * 0.1);
+        let turn = DQuat::from_rotation_y(f64::from(index) * 0.1);
         let body = Body::new(clump.clone()).surface(Surface::Spheres { radius: 0.05 });
         let at = DVec3::X * (f64::from(index) * 1e-9);
         builder = builder.body(body.orientation(turn).position(at));
@@ -552,15 +551,15 @@ fn the_order_of_bodies_does_not_matter() {
         let cube: Vec<_> = (0..8)
             .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 0.1)
             .collect();
-        let cube = Body::new(tumble::Shape::of_particles(&cube).unwrap()).name("cube").mass(1.0);
-        let ball = tumble::Shape::of_particles(&[DVec3::ZERO]).unwrap();
+        let cube = Body::new(Shape::of_particles(&cube).unwrap()).name("cube").mass(1.0);
+        let ball = Shape::of_particles(&[DVec3::ZERO]).unwrap();
         let ball = Body::new(ball).name("ball").mass(1.0);
         let ball = ball.surface(Surface::Spheres { radius: 0.05 });
         let ball = ball.position(DVec3::new(-0.2, 0.01, 0.02)).velocity(DVec3::X * 2.0);
-        let material = tumble::Material {
-            damping: tumble::Damping::Restitution(0.5),
+        let material = Material {
+            damping: Damping::Restitution(0.5),
             friction_stiffness: 0.3,
-            ..tumble::Material::default()
+            ..Material::default()
         };
         let world = World::builder().dt(1e-4).gravity(DVec3::ZERO).material(material);
         let world = if swap { world.body(ball).body(cube) } else { world.body(cube).body(ball) };

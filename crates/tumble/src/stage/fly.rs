@@ -6,19 +6,20 @@ use crate::flight::{Glide, Turn, free_rotation};
 use crate::{BodyModel, BodyState, Model, Scratch, State, Tally, parallel};
 
 /// Lets the bodies that cannot touch a wall fly the whole time `h` (s) at once.
-pub fn cruise(model: &Model, state: &mut State, scratch: &Scratch, h: f64) {
+pub fn cruise(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     fly_those(model, state, scratch, h, false);
 }
 
 /// Lets the bodies that may touch a wall fly for the time `h` (s).
-pub fn fly(model: &Model, state: &mut State, scratch: &Scratch, h: f64) {
+pub fn fly(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     fly_those(model, state, scratch, h, true);
 }
 
-fn fly_those(model: &Model, state: &mut State, scratch: &Scratch, h: f64, near: bool) {
-    parallel::tally_bodies(&mut state.tally, &mut state.bodies, |index, body_state| {
+fn fly_those(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64, near: bool) {
+    let Scratch { near: is_near, tallies, .. } = scratch;
+    parallel::tally_bodies(&mut state.tally, &mut state.bodies, tallies, |index, body_state| {
         let body = &model.bodies[index];
-        if scratch.near[index] != near || !body.is_free() {
+        if is_near[index] != near || !body.is_free() {
             return Tally::default();
         }
         Tally { drag: fly_body(model, body, body_state, h), ..Tally::default() }

@@ -6,9 +6,9 @@ use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally, para
 /// v ← v + F h/M, L ← L + τ h, with the contact forces of [`contact`](super::contact()) and [`meet`](super::meet()) over the time
 /// `h` (s).
 pub fn kick(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
-    let Scratch { forces, near, springs, meeting, .. } = scratch;
+    let Scratch { forces, near, springs, tallies, meeting, .. } = scratch;
     let (forces, near) = (&*forces, &*near);
-    parallel::tally_bodies(&mut state.tally, &mut state.bodies, |index, body_state| {
+    parallel::tally_bodies(&mut state.tally, &mut state.bodies, tallies, |index, body_state| {
         let (body, forces) = (&model.bodies[index], &forces[index]);
         if !body.is_free() {
             resist(body, body_state, forces, h)

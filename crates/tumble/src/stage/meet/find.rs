@@ -1,6 +1,7 @@
 //! Which of the listed points touch, and the springs they had.
 
 use std::cmp::Ordering;
+use std::ops::Range;
 
 use glam::DVec3;
 
@@ -8,6 +9,7 @@ use super::contact::{Contact, Mount, PairForces, Touch};
 use super::list::{self, Near, Pair, Point};
 use super::pose::Pose;
 use crate::parallel::CHUNK;
+use crate::state::pair_order;
 use crate::{BodyModel, ContactKind, Model, PairSpring};
 
 /// The contacts of the bodies of one chunk, as first bodies.
@@ -58,78 +60,42 @@ pub(super) struct Touching {
     pub forces: PairForces,
 }
 
+impl Touching {
+    /// Its contacts, of those of the chunk.
+    pub fn range(&self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
+/// What contacts are found from.
+#[derive(Clone, Copy)]
+pub(super) struct Moment<'a> {
+    pub model: &'a Model,
+    pub poses: &'a [Pose],
+    /// All springs so far.
+    pub springs: &'a [PairSpring],
+    /// Time since the latest kick (s).
+    pub since: f64,
+}
+
 impl Found {
-    /// Finds the contacts among the listed points of a chunk whose first body is number `body`. `old` are all springs
-    /// so far, `h` (s) is the time since the latest kick.
+    /// Finds the contacts among the listed points of a chunk whose first body is number `body`.
     #[inline(always)]
-    pub fn find(
-        &mut self,
-        near: &mut Near,
-        model: &Model,
-        poses: &[Pose],
-        old: &[PairSpring],
-        h: f64,
-        body: usize,
-    ) {
+    pub fn find(&mut self, near: &mut Near, moment: &Moment, body: usize) {
         self.contacts.clear();
         self.touching.clear();
         self.number.clear();
         self.number.resize(near.pairs.len(), NONE);
-        self.released.clear();
         self.too_fast = None;
-        self.released.resize(CHUNK, 0.0);
-        let since = old.partition_point(|spring| (spring.first as usize) < body);
-        let until = old.partition_point(|spring| (spring.first as usize) < body + CHUNK);
-        let mut springs =
-            OldSprings { model, old: &old[since..until], released: &mut self.released, body };
+        let mut springs = OldSprings::of_chunk(moment, body, std::mem::take(&mut self.released));
         for (number, pair) in near.pairs.iter_mut().enumerate() {
-            let sides = Sides::of(model, poses, pair);
-            let travel = sides.travel();
-            let way = sides.way(pair);
-            if travel < pair.quiet && way <= pair.limit {
+            let sides = Sides::of(moment, pair);
+            if sides.travel() < pair.quiet && sides.way(pair) <= pair.limit {
                 continue;
             }
             let start = self.contacts.len();
-            let mut quiet = f64::INFINITY;
-            for point in &mut near.points[pair.start as usize..pair.end as usize] {
-                // what the lists remember is no reason to refuse a step: it is looked at anew
-                let passes = |quiet: f64| way > pair.limit && travel + way > quiet;
-                if travel >= point.quiet || passes(point.quiet) {
-                    match sides.touch(pair, point) {
-                        Ok(touch) => {
-                            point.quiet = 0.0;
-                            self.contacts.push(Contact {
-                                touch,
-                                before: DVec3::ZERO,
-                                stretch: DVec3::ZERO,
-                                held: 0.0,
-                                weight: sides.weight(pair, point),
-                                particle: point.particle,
-                                other: if pair.kind == ContactKind::Spheres {
-                                    point.other
-                                } else {
-                                    0
-                                },
-                            });
-                            // a new spring is held where it is found
-                            if pair.law.friction > 0.0
-                                && let Some(contact) = self.contacts.last_mut()
-                                && let Some(stretch) = springs.take(pair, contact)
-                            {
-                                contact.before = stretch;
-                                let mount = sides.mount(pair, touch.depth);
-                                contact.carry(&mount, sides.first, sides.second, h);
-                            }
-                        }
-                        Err(gap) => point.quiet = travel + gap,
-                    }
-                    if passes(point.quiet) && self.too_fast.is_none() {
-                        self.too_fast = Some(too_fast(model, pair, point, way));
-                    }
-                }
-                quiet = quiet.min(point.quiet);
-            }
-            pair.quiet = quiet;
+            let points = &mut near.points[pair.start as usize..pair.end as usize];
+            pair.quiet = self.find_pair(pair, points, &sides, &mut springs);
             if self.contacts.len() > start {
                 self.number[number] = self.touching.len() as u32;
                 self.touching.push(Touching {
@@ -142,6 +108,38 @@ impl Found {
             }
         }
         springs.release_all();
+        self.released = springs.released;
+    }
+
+    /// Finds the contacts of a pair; returns until when it is quiet (m of travel).
+    #[inline(always)]
+    fn find_pair(
+        &mut self,
+        pair: &Pair,
+        points: &mut [Point],
+        sides: &Sides,
+        springs: &mut OldSprings,
+    ) -> f64 {
+        let (travel, way) = (sides.travel(), sides.way(pair));
+        // what the lists remember is no reason to refuse a step: it is looked at anew
+        let passes = |quiet: f64| way > pair.limit && travel + way > quiet;
+        let mut quiet = f64::INFINITY;
+        for point in points {
+            if travel >= point.quiet || passes(point.quiet) {
+                match sides.touch(pair, point) {
+                    Ok(touch) => {
+                        point.quiet = 0.0;
+                        self.contacts.push(sides.contact(pair, point, touch, springs));
+                    }
+                    Err(gap) => point.quiet = travel + gap,
+                }
+                if passes(point.quiet) && self.too_fast.is_none() {
+                    self.too_fast = Some(too_fast(sides.model, pair, point, way));
+                }
+            }
+            quiet = quiet.min(point.quiet);
+        }
+        quiet
     }
 
     /// The forces of all contacts with the velocities of `poses`; of a first look the totals alone.
@@ -151,7 +149,7 @@ impl Found {
             let pair = &near.pairs[touching.pair as usize];
             let (first, second) = ends(poses, pair);
             touching.forces = PairForces::default();
-            for contact in &mut self.contacts[touching.start as usize..touching.end as usize] {
+            for contact in &mut self.contacts[touching.range()] {
                 contact.push::<FIRST>(&pair.law, first, second, &mut touching.forces);
             }
         }
@@ -161,7 +159,7 @@ impl Found {
     pub fn elastic_energy(&self, near: &Near) -> f64 {
         let of_pair = |touching: &Touching| {
             let law = &near.pairs[touching.pair as usize].law;
-            let contacts = &self.contacts[touching.start as usize..touching.end as usize];
+            let contacts = &self.contacts[touching.range()];
             let stored = |contact: &Contact| {
                 contact.weight
                     * (law.stiffness * contact.touch.depth * contact.touch.depth
@@ -181,7 +179,7 @@ impl Found {
             if pair.law.friction == 0.0 {
                 continue;
             }
-            for contact in &self.contacts[touching.start as usize..touching.end as usize] {
+            for contact in &self.contacts[touching.range()] {
                 self.springs.push(spring(model, pair, contact));
             }
         }
@@ -224,17 +222,19 @@ struct Sides<'a> {
     model: &'a Model,
     first: &'a Pose,
     second: &'a Pose,
+    /// Time since the latest kick (s).
+    since: f64,
 }
 
 impl<'a> Sides<'a> {
-    fn of(model: &'a Model, poses: &'a [Pose], pair: &Pair) -> Self {
-        let (first, second) = ends(poses, pair);
-        Self { model, first, second }
+    fn of(moment: &Moment<'a>, pair: &Pair) -> Self {
+        let (first, second) = ends(moment.poses, pair);
+        Self { model: moment.model, first, second, since: moment.since }
     }
 
     /// How far the one can come against the other in a step (m), at most.
     fn way(&self, pair: &Pair) -> f64 {
-        let Self { model, first, second } = self;
+        let Self { model, first, second, .. } = self;
         let most = first.way + second.way;
         if most <= pair.limit {
             return most;
@@ -297,6 +297,36 @@ impl<'a> Sides<'a> {
         Ok(Touch { normal, depth, arm: at - p.position, other_arm: at - q.position })
     }
 
+    /// The contact of a point that touches, with the spring that it had.
+    #[inline(always)]
+    fn contact(
+        &self,
+        pair: &Pair,
+        point: &Point,
+        touch: Touch,
+        springs: &mut OldSprings,
+    ) -> Contact {
+        let other = if pair.kind == ContactKind::Spheres { point.other } else { 0 };
+        let mut contact = Contact {
+            touch,
+            before: DVec3::ZERO,
+            stretch: DVec3::ZERO,
+            held: 0.0,
+            weight: self.weight(pair, point),
+            particle: point.particle,
+            other,
+        };
+        // a new spring is held where it is found
+        if pair.law.friction > 0.0
+            && let Some(stretch) = springs.take(pair, &contact)
+        {
+            contact.before = stretch;
+            let mount = self.mount(pair, touch.depth);
+            contact.carry(&mount, self.first, self.second, self.since);
+        }
+        contact
+    }
+
     /// The weight of the particle that touches.
     fn weight(&self, pair: &Pair, point: &Point) -> f64 {
         let body = match pair.kind {
@@ -349,11 +379,21 @@ fn touch_mesh(
 struct OldSprings<'a> {
     model: &'a Model,
     old: &'a [PairSpring],
-    released: &'a mut [f64],
+    /// Energy (J) of those that have come loose, by body of the chunk.
+    released: Vec<f64>,
     body: usize,
 }
 
-impl OldSprings<'_> {
+impl<'a> OldSprings<'a> {
+    /// Those of the chunk whose first body is number `body`, none released; `released` is room.
+    fn of_chunk(moment: &Moment<'a>, body: usize, mut released: Vec<f64>) -> Self {
+        let before = |end: usize| moment.springs.partition_point(|s| (s.first as usize) < end);
+        released.clear();
+        released.resize(CHUNK, 0.0);
+        let old = &moment.springs[before(body)..before(body + CHUNK)];
+        Self { model: moment.model, old, released, body }
+    }
+
     /// The stretch that a contact had at the latest kick; springs that come before it are released.
     fn take(&mut self, pair: &Pair, contact: &Contact) -> Option<DVec3> {
         while let Some((spring, rest)) = self.old.split_first() {
@@ -377,10 +417,8 @@ impl OldSprings<'_> {
     }
 
     fn compare(&self, spring: &PairSpring, pair: &Pair, contact: &Contact) -> Ordering {
-        let order = (pair.kind != ContactKind::Wall, pair.second, pair.kind);
-        let of_pair =
-            (spring.first, (spring.kind != ContactKind::Wall, spring.second, spring.kind));
-        of_pair.cmp(&(pair.first, order)).then_with(|| {
+        let of_spring = pair_order(spring.first, spring.second, spring.kind);
+        of_spring.cmp(&pair_order(pair.first, pair.second, pair.kind)).then_with(|| {
             let (particle, other) = slots(self.model, spring);
             (particle, other).cmp(&(contact.particle, contact.other))
         })

@@ -9,6 +9,7 @@ use glam::DVec3;
 use super::grid::{Ball, Grid};
 use super::pose::Pose;
 use crate::parallel::{self, CHUNK};
+use crate::state::{PairOrder, pair_order};
 use crate::{BodyModel, ContactKind, ContactLaw, Model, Surface};
 
 /// The skin of a body as a part of the radius of its spheres, or of what stands for it.
@@ -195,12 +196,12 @@ impl Near {
             |index: u32| Side { body: &model.bodies[index as usize], pose: &poses[index as usize] };
         let (a, b) = (at(first), at(second));
         for &kind in kinds(a.body, b.body) {
-            let start = self.points.len() as u32;
+            let (start, key) = (self.points.len() as u32, pair_order(first, second, kind));
             match kind {
                 ContactKind::Wall => {}
                 ContactKind::Spheres => self.list_spheres(a, b),
-                ContactKind::FirstInSecond => self.list_particles(a, b, (first, second, kind)),
-                ContactKind::SecondInFirst => self.list_particles(b, a, (first, second, kind)),
+                ContactKind::FirstInSecond => self.list_particles(a, b, key),
+                ContactKind::SecondInFirst => self.list_particles(b, a, key),
             }
             let (law, reach) = (law(a.body, b.body, kind), reach(a.body, b.body, kind));
             // a mesh is asked farther out, so that it need not be asked again so soon
@@ -251,7 +252,7 @@ impl Near {
 
     /// Particles of `a` that are near the mesh of `b`: by leaves of the tree, since what is known of each particle from the
     /// list before is worth more than a look at it now.
-    fn list_particles(&mut self, a: Side, b: Side, key: (u32, u32, ContactKind)) {
+    fn list_particles(&mut self, a: Side, b: Side, key: PairOrder) {
         let Some(solid) = &b.body.solid else { return };
         let (margin, reach) = (a.pose.skin + b.pose.skin, radius(a.body));
         // places of the frame of `a` in the frame of `b`
@@ -275,16 +276,9 @@ impl Near {
 }
 
 /// The points of a pair in a list.
-fn points_of<'a>(
-    pairs: &[Pair],
-    points: &'a [Point],
-    (first, second, kind): (u32, u32, ContactKind),
-) -> &'a [Point] {
-    let order = |first: u32, second: u32, kind: ContactKind| {
-        (first, kind != ContactKind::Wall, second, kind)
-    };
-    let of_pair = |pair: &Pair| order(pair.first, pair.second, pair.kind);
-    match pairs.binary_search_by_key(&order(first, second, kind), of_pair) {
+fn points_of<'a>(pairs: &[Pair], points: &'a [Point], key: PairOrder) -> &'a [Point] {
+    let of_pair = |pair: &Pair| pair_order(pair.first, pair.second, pair.kind);
+    match pairs.binary_search_by_key(&key, of_pair) {
         Ok(found) => &points[pairs[found].start as usize..pairs[found].end as usize],
         Err(_) => &[],
     }

@@ -16,8 +16,8 @@ mod start;
 
 use fearless_simd::{Level, Simd, dispatch};
 
-use self::find::Found;
 pub(crate) use self::find::TooFast;
+use self::find::{Found, Moment};
 use self::gather::BodySum;
 use self::list::Lists;
 pub(crate) use self::list::can_touch;
@@ -83,18 +83,24 @@ impl Meeting {
         }
     }
 
-    fn find(&mut self, model: &Model, old: &[PairSpring], h: f64) {
-        let poses = &self.poses;
+    fn find(&mut self, model: &Model, springs: &[PairSpring], since: f64) {
+        let moment = Moment { model, poses: &self.poses, springs, since };
         self.found.resize_with(self.lists.chunks.len(), Found::default);
         parallel::each_of_two(&mut self.found, &mut self.lists.chunks, |index, found, near| {
-            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.find(near, model, poses, old, h, index * CHUNK)));
+            at_full_width(
+                #[inline(always)]
+                || found.find(near, &moment, index * CHUNK),
+            );
         });
     }
 
     fn push<const FIRST: bool>(&mut self) {
         let (poses, chunks) = (&self.poses, &self.lists.chunks);
         parallel::each(&mut self.found, |index, found| {
-            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.push::<FIRST>(&chunks[index], poses)));
+            at_full_width(
+                #[inline(always)]
+                || found.push::<FIRST>(&chunks[index], poses),
+            );
         });
     }
 
@@ -128,4 +134,9 @@ impl Meeting {
             springs.extend_from_slice(&found.springs);
         }
     }
+}
+
+/// Runs `work` with all that the processor can do. It changes no bit.
+fn at_full_width(work: impl FnOnce()) {
+    dispatch!(Level::new(), simd => simd.vectorize(work));
 }

@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::contact::Contact;
-use super::find::Touching;
 use super::list::{self, Pair};
 use super::{Meeting, crowd};
 use crate::stage::Placed;
@@ -120,9 +119,9 @@ impl Meeting {
     /// Calls `visit` with each pair that has contacts, and these.
     fn each_touching(&self, mut visit: impl FnMut(&Pair, &[Contact])) {
         for (found, near) in self.found.iter().zip(&self.lists.chunks) {
-            for &Touching { pair, start, end, .. } in &found.touching {
-                let contacts = &found.contacts[start as usize..end as usize];
-                visit(&near.pairs[pair as usize], contacts);
+            for touching in &found.touching {
+                let contacts = &found.contacts[touching.range()];
+                visit(&near.pairs[touching.pair as usize], contacts);
             }
         }
     }
