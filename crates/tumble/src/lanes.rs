@@ -4,11 +4,28 @@
 //! Sums over particles run in eight fixed lanes, which are added at the end in a fixed order. No multiplication
 //! is fused with an addition.
 
-use fearless_simd::{Simd, f64x8, prelude::*};
+use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
 use glam::{DMat3, DVec3};
 
 /// How many lanes there are.
 pub(crate) const LANES: usize = 8;
+
+/// Eight vectors in memory, by coordinate.
+pub(crate) type Columns = [[f64; LANES]; 3];
+
+/// One of eight vectors.
+#[inline(always)]
+pub(crate) fn vector(columns: &Columns, lane: usize) -> DVec3 {
+    DVec3::new(columns[0][lane], columns[1][lane], columns[2][lane])
+}
+
+/// Sets one of eight vectors.
+#[inline(always)]
+pub(crate) fn set(columns: &mut Columns, lane: usize, v: DVec3) {
+    for (column, value) in columns.iter_mut().zip(v.to_array()) {
+        column[lane] = value;
+    }
+}
 
 /// Eight vectors.
 #[derive(Clone, Copy)]
@@ -27,7 +44,7 @@ impl<S: Simd> Vec3x8<S> {
 
     /// One vector a lane, by coordinate.
     #[inline(always)]
-    pub fn load(simd: S, columns: &[[f64; LANES]; 3]) -> Self {
+    pub fn load(simd: S, columns: &Columns) -> Self {
         let [x, y, z] = columns;
         Self {
             x: f64x8::simd_from(simd, *x),
@@ -38,7 +55,7 @@ impl<S: Simd> Vec3x8<S> {
 
     /// By coordinate, one vector a lane.
     #[inline(always)]
-    pub fn store(self) -> [[f64; LANES]; 3] {
+    pub fn store(self) -> Columns {
         [self.x.into(), self.y.into(), self.z.into()]
     }
 
@@ -72,6 +89,22 @@ impl<S: Simd> Vec3x8<S> {
     #[inline(always)]
     pub fn across(self, normal: Self) -> Self {
         self - normal * self.dot(normal)
+    }
+
+    /// Each vector divided by a number.
+    #[inline(always)]
+    pub fn over(self, divisor: f64x8<S>) -> Self {
+        Self { x: self.x / divisor, y: self.y / divisor, z: self.z / divisor }
+    }
+
+    /// From the one where `mask` is set, from the other elsewhere.
+    #[inline(always)]
+    pub fn select(mask: mask64x8<S>, set: Self, unset: Self) -> Self {
+        Self {
+            x: mask.select(set.x, unset.x),
+            y: mask.select(set.y, unset.y),
+            z: mask.select(set.z, unset.z),
+        }
     }
 
     /// The sum over the lanes.

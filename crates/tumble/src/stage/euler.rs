@@ -17,7 +17,7 @@ pub fn euler(model: &Model, state: &mut State, scratch: &mut Scratch) {
         advance(body, &mut state.bodies[index], forces, model.dt, &mut state.tally);
         std::mem::swap(&mut state.springs[index], &mut scratch.springs[index]);
     }
-    scratch.meeting.keep(model, &mut state.pair_springs);
+    scratch.meeting.keep(&mut state.pair_springs);
 }
 
 /// Advances one body.

@@ -22,7 +22,7 @@ pub fn kick(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     for (index, springs) in springs.iter_mut().enumerate().filter(|(index, _)| near[*index]) {
         std::mem::swap(&mut state.springs[index], springs);
     }
-    meeting.keep(model, &mut state.pair_springs);
+    meeting.keep(&mut state.pair_springs);
 }
 
 /// Kicks one body; returns what its contacts lost.

@@ -9,7 +9,7 @@ use fearless_simd::{Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::placed::{NearWall, Placed};
-use crate::lanes::{LANES, Vec3x8, largest, positive, sum};
+use crate::lanes::{Columns, LANES, Vec3x8, largest, positive, set, sum, vector};
 use crate::{BodyForces, ContactLaw, FrictionSpring, Model, Particles, Wrench};
 
 /// The particles of one body that touch walls with friction.
@@ -34,13 +34,13 @@ struct Eight {
     /// Depth δ (m).
     depth: [f64; LANES],
     /// From the centre of mass to the particle, R r (m).
-    arm: [[f64; LANES]; 3],
+    arm: Columns,
     /// Where the spring was anchored before this push (m).
-    anchor: [[f64; LANES]; 3],
+    anchor: Columns,
     /// Its stretch at the latest kick (m).
-    before: [[f64; LANES]; 3],
+    before: Columns,
     /// The stretch that the limit lets it keep (m).
-    held: [[f64; LANES]; 3],
+    held: Columns,
     /// Whether that is less than it had, a bit a lane.
     slips: u64,
 }
@@ -105,16 +105,6 @@ impl Eight {
             *weight = particles.weight(particle as usize);
         }
         weights
-    }
-}
-
-fn vector(columns: &[[f64; LANES]; 3], lane: usize) -> DVec3 {
-    DVec3::new(columns[0][lane], columns[1][lane], columns[2][lane])
-}
-
-fn set(columns: &mut [[f64; LANES]; 3], lane: usize, v: DVec3) {
-    for (column, value) in columns.iter_mut().zip(v.to_array()) {
-        column[lane] = value;
     }
 }
 
@@ -327,7 +317,12 @@ impl Push<'_> {
 
 /// The largest part, up to one, of `brake` that can be added to `hold` without the sum being longer than `limit`.
 #[inline(always)]
-fn within<S: Simd>(simd: S, hold: Vec3x8<S>, brake: Vec3x8<S>, limit: f64x8<S>) -> f64x8<S> {
+pub(in crate::stage) fn within<S: Simd>(
+    simd: S,
+    hold: Vec3x8<S>,
+    brake: Vec3x8<S>,
+    limit: f64x8<S>,
+) -> f64x8<S> {
     // the larger root of |hold + β brake|² = limit²
     let zero = f64x8::splat(simd, 0.0);
     let one = f64x8::splat(simd, 1.0);

@@ -15,6 +15,7 @@ mod placed;
 mod tests;
 
 pub(crate) use friction::Touching;
+pub(in crate::stage) use friction::within;
 pub(crate) use placed::Placed;
 
 use crate::parallel;

@@ -1,70 +1,64 @@
-//! Which of the listed points touch, and the springs they had.
+//! Which of the listed points touch, and what they do.
 
-use std::cmp::Ordering;
-use std::ops::Range;
-
+use fearless_simd::Simd;
 use glam::DVec3;
 
-use super::contact::{Contact, Mount, PairForces, Touch};
+use super::contact::{Approach, Eight, PairForces};
 use super::list::{self, Near, Pair, Point};
-use super::pose::Pose;
-use crate::parallel::CHUNK;
-use crate::state::pair_order;
-use crate::{BodyModel, ContactKind, Model, PairSpring};
+use super::mesh::touch_mesh;
+use super::pose::{self, Pose};
+use super::springs::OldSprings;
+use crate::lanes::{LANES, set, vector};
+use crate::{ContactKind, Model, PairSpring, Particles};
 
 /// The contacts of the bodies of one chunk, as first bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Found {
-    /// The contacts, pair by pair.
-    pub contacts: Vec<Contact>,
-    /// The pairs that have contacts.
+    /// The points that were looked at, pair by pair; what is beyond the number in use is room.
+    eights: Vec<Eight>,
+    in_use: usize,
+    /// Which list they are from.
+    made: u64,
+    /// The pairs with such points.
     pub touching: Vec<Touching>,
-    /// For each pair of the list, which of `touching` it is, or `NONE`.
+    /// For each pair of the list, which of `touching` it is if it has a contact, or `NONE`.
     pub number: Vec<u32>,
-    /// Energy (J) of springs that have come loose, by first body.
+    /// Energy (J) of springs that have come loose, by body of the chunk.
     pub released: Vec<f64>,
     /// The springs that go on.
     pub springs: Vec<PairSpring>,
-    /// The first pair that is so fast that one could pass through the other in a step.
+    /// The first two bodies that could pass through each other in a step.
     pub too_fast: Option<TooFast>,
+    /// Room for what eight of them are found from.
+    approach: Approach,
 }
 
-/// Two bodies that could pass through each other in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Marks a pair without contact.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Two bodies that move so fast against each other that one could pass through the other in a step.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct TooFast {
     /// The body whose particle it is.
     pub body: u32,
-    /// Which particle.
+    /// Which particle, by index.
     pub particle: u32,
-    /// The other body.
     pub other: u32,
-    /// How far it comes in a step (m).
+    /// How far the one may come against the other in a step (m).
     pub way: f64,
-    /// How far it may come (m).
+    /// How far it may (m).
     pub limit: f64,
 }
 
-/// A pair that has no contact.
-pub(super) const NONE: u32 = u32::MAX;
-
-/// A pair of bodies in contact.
-#[derive(Clone, Copy, Debug)]
+/// A pair that has contacts, and what they do.
+#[derive(Clone, Debug)]
 pub(super) struct Touching {
     /// Which pair of the list.
     pub pair: u32,
+    /// The first body.
     pub first: u32,
-    /// Its contacts, as a range of those of the chunk.
-    pub start: u32,
-    pub end: u32,
-    /// What they do.
+    /// The total of its forces.
     pub forces: PairForces,
-}
-
-impl Touching {
-    /// Its contacts, of those of the chunk.
-    pub fn range(&self) -> Range<usize> {
-        self.start as usize..self.end as usize
-    }
 }
 
 /// What contacts are found from.
@@ -79,115 +73,215 @@ pub(super) struct Moment<'a> {
 }
 
 impl Found {
-    /// Finds the contacts among the listed points of a chunk whose first body is number `body`.
+    /// Finds the contacts among the listed points of a chunk whose first body is number `body`, and their forces. `FIRST` is that
+    /// of [`Eight::push`].
     #[inline(always)]
-    pub fn find(&mut self, near: &mut Near, moment: &Moment, body: usize) {
-        self.contacts.clear();
+    pub fn find<S: Simd, const FIRST: bool>(
+        &mut self,
+        simd: S,
+        near: &mut Near,
+        moment: &Moment,
+        body: usize,
+    ) {
+        if std::mem::replace(&mut self.made, near.made) != near.made {
+            self.eights.clear();
+        }
+        self.in_use = 0;
         self.touching.clear();
         self.number.clear();
         self.number.resize(near.pairs.len(), NONE);
         self.too_fast = None;
-        let mut springs = OldSprings::of_chunk(moment, body, std::mem::take(&mut self.released));
-        for (number, pair) in near.pairs.iter_mut().enumerate() {
+        let springs = OldSprings::of_chunk(moment, body, std::mem::take(&mut self.released));
+        let mut search = Search::new(self, moment, springs);
+        let Near { pairs, points, .. } = near;
+        for (number, pair) in pairs.iter().enumerate() {
             let sides = Sides::of(moment, pair);
-            if sides.travel() < pair.quiet && sides.way(pair) <= pair.limit {
+            if sides.travel < pair.quiet && sides.way <= pair.limit {
                 continue;
             }
-            let start = self.contacts.len();
-            let points = &mut near.points[pair.start as usize..pair.end as usize];
-            pair.quiet = self.find_pair(pair, points, &sides, &mut springs);
-            if self.contacts.len() > start {
-                self.number[number] = self.touching.len() as u32;
-                self.touching.push(Touching {
-                    pair: number as u32,
-                    first: pair.first,
-                    start: start as u32,
-                    end: self.contacts.len() as u32,
-                    forces: PairForces::default(),
-                });
-            }
-        }
-        springs.release_all();
-        self.released = springs.released;
-    }
-
-    /// Finds the contacts of a pair; returns until when it is quiet (m of travel).
-    #[inline(always)]
-    fn find_pair(
-        &mut self,
-        pair: &Pair,
-        points: &mut [Point],
-        sides: &Sides,
-        springs: &mut OldSprings,
-    ) -> f64 {
-        let (travel, way) = (sides.travel(), sides.way(pair));
-        // what the lists remember is no reason to refuse a step: it is looked at anew
-        let passes = |quiet: f64| way > pair.limit && travel + way > quiet;
-        let mut quiet = f64::INFINITY;
-        for point in points {
-            if travel >= point.quiet || passes(point.quiet) {
-                match sides.touch(pair, point) {
-                    Ok(touch) => {
-                        point.quiet = 0.0;
-                        self.contacts.push(sides.contact(pair, point, touch, springs));
-                    }
-                    Err(gap) => point.quiet = travel + gap,
-                }
-                if passes(point.quiet) && self.too_fast.is_none() {
-                    self.too_fast = Some(too_fast(sides.model, pair, point, way));
+            search.begin(number, pair);
+            for index in pair.start..pair.end {
+                let point = &mut points[index as usize];
+                if (sides.travel >= point.quiet || sides.passes(pair, point.quiet))
+                    && search.ask(&sides, pair, index, point) == LANES
+                {
+                    search.settle::<S, FIRST>(simd, pairs, points);
                 }
             }
-            quiet = quiet.min(point.quiet);
         }
-        quiet
+        search.settle::<S, FIRST>(simd, pairs, points);
+        search.springs.release_all();
+        self.released = search.springs.released;
+        self.set_quiet(near);
     }
 
-    /// The forces of all contacts with the velocities of `poses`; of a first look the totals alone.
+    /// Until when the pairs that were looked at are quiet.
+    fn set_quiet(&self, near: &mut Near) {
+        for touching in &self.touching {
+            let pair = &mut near.pairs[touching.pair as usize];
+            let points = &near.points[pair.start as usize..pair.end as usize];
+            pair.quiet = points.iter().fold(f64::INFINITY, |quiet, point| quiet.min(point.quiet));
+        }
+    }
+
+    /// The forces of all contacts with the velocities of `poses`.
     #[inline(always)]
-    pub fn push<const FIRST: bool>(&mut self, near: &Near, poses: &[Pose]) {
+    pub fn push<S: Simd>(&mut self, simd: S, poses: &[Pose]) {
         for touching in &mut self.touching {
-            let pair = &near.pairs[touching.pair as usize];
-            let (first, second) = ends(poses, pair);
             touching.forces = PairForces::default();
-            for contact in &mut self.contacts[touching.range()] {
-                contact.push::<FIRST>(&pair.law, first, second, &mut touching.forces);
-            }
+        }
+        for eight in &mut self.eights[..self.in_use] {
+            eight.push::<S, false>(simd, poses, &mut self.touching);
         }
     }
 
     /// Energy in the springs (J).
-    pub fn elastic_energy(&self, near: &Near) -> f64 {
-        let of_pair = |touching: &Touching| {
-            let law = &near.pairs[touching.pair as usize].law;
-            let contacts = &self.contacts[touching.range()];
-            let stored = |contact: &Contact| {
-                contact.weight
-                    * (law.stiffness * contact.touch.depth * contact.touch.depth
-                        + law.friction_spring * contact.stretch.length_squared())
-            };
-            0.5 * contacts.iter().map(stored).sum::<f64>()
-        };
+    pub fn elastic_energy(&self) -> f64 {
+        // contact by contact: how they come to be in lanes is up to the lists
+        let contacts = self.eights[..self.in_use]
+            .iter()
+            .flat_map(|eight| eight.in_contact().map(move |lane| (eight, lane)));
+        let held: f64 = contacts.map(|(eight, lane)| eight.elastic_energy(lane)).sum();
         // springs that have come loose are released at the next kick
-        self.touching.iter().map(of_pair).sum::<f64>() + self.released.iter().sum::<f64>()
+        held + self.released.iter().sum::<f64>()
+    }
+
+    /// Calls `visit` with the pair, the normal and the depth (m) of each contact.
+    pub fn each_contact(&self, near: &Near, mut visit: impl FnMut(&Pair, DVec3, f64)) {
+        for eight in &self.eights[..self.in_use] {
+            for lane in eight.in_contact() {
+                let pair = self.touching[eight.touching[lane] as usize].pair;
+                let normal = vector(&eight.normal, lane);
+                visit(&near.pairs[pair as usize], normal, eight.depth[lane]);
+            }
+        }
     }
 
     /// The springs that go on after the latest push.
-    pub fn keep(&mut self, near: &Near, model: &Model) {
+    pub fn keep(&mut self, near: &Near) {
         self.springs.clear();
-        for touching in &self.touching {
-            let pair = &near.pairs[touching.pair as usize];
-            if pair.law.friction == 0.0 {
-                continue;
-            }
-            for contact in &self.contacts[touching.range()] {
-                self.springs.push(spring(model, pair, contact));
+        for eight in &self.eights[..self.in_use] {
+            for lane in eight.in_contact().filter(|&lane| eight.friction[lane] > 0.0) {
+                let pair = self.touching[eight.touching[lane] as usize].pair;
+                let mut spring = eight.spring(lane, &near.pairs[pair as usize]);
+                spring.stretch = eight.kept(lane);
+                self.springs.push(spring);
             }
         }
     }
 }
 
+/// The search for the contacts of a chunk, eight at a time.
+struct Search<'a> {
+    moment: &'a Moment<'a>,
+    found: &'a mut Found,
+    springs: OldSprings<'a>,
+    /// What the lists have to know of those that are being looked at, and how many there are.
+    asked: Asked,
+    count: usize,
+}
+
+#[derive(Default)]
+struct Asked {
+    /// How far both bodies have come together (m).
+    travel: [f64; LANES],
+    /// How far one may come against the other in a step (m).
+    way: [f64; LANES],
+}
+
+impl<'a> Search<'a> {
+    fn new(found: &'a mut Found, moment: &'a Moment<'a>, springs: OldSprings<'a>) -> Self {
+        Self { moment, found, springs, asked: Asked::default(), count: 0 }
+    }
+
+    /// Goes on to a pair.
+    fn begin(&mut self, number: usize, pair: &Pair) {
+        let forces = PairForces::default();
+        self.found.touching.push(Touching { pair: number as u32, first: pair.first, forces });
+    }
+
+    /// Takes a point of the latest pair into the next lane; returns how many are in use.
+    #[inline(always)]
+    fn ask(&mut self, sides: &Sides, pair: &Pair, index: u32, point: &mut Point) -> usize {
+        let lane = self.count;
+        let Found { eights, in_use, touching, approach, .. } = &mut *self.found;
+        if eights.len() == *in_use {
+            eights.push(Eight::default());
+        }
+        let eight = &mut eights[*in_use];
+        self.asked.travel[lane] = sides.travel;
+        self.asked.way[lane] = sides.way;
+        eight.touching[lane] = touching.len() as u32 - 1;
+        // in a heap at rest it is the same points every time
+        if eight.point[lane] != index {
+            eight.point[lane] = index;
+            sides.take_law(pair, point, lane, eight);
+        }
+        sides.approach(pair, point, lane, approach);
+        self.count = lane + 1;
+        self.count
+    }
+
+    /// Looks at what the lanes hold, and goes on to the next eight.
+    #[inline(always)]
+    fn settle<S: Simd, const FIRST: bool>(
+        &mut self,
+        simd: S,
+        pairs: &[Pair],
+        points: &mut [Point],
+    ) {
+        let count = std::mem::take(&mut self.count);
+        if count == 0 {
+            return;
+        }
+        let Moment { poses, since, .. } = *self.moment;
+        let Found { eights, in_use, approach, .. } = &mut *self.found;
+        let eight = &mut eights[*in_use];
+        eight.count = count;
+        eight.touch(simd, approach);
+        for lane in 0..count {
+            self.settle_lane(lane, pairs, points);
+        }
+        let Found { eights, in_use, approach, touching, .. } = &mut *self.found;
+        let eight = &mut eights[*in_use];
+        *in_use += 1;
+        eight.depth[count..].fill(0.0);
+        if eight.has_friction {
+            eight.carry(simd, approach, poses, since);
+        }
+        eight.push::<S, FIRST>(simd, poses, touching);
+    }
+
+    /// Tells the lists what was found in a lane, and finds the spring that was there.
+    #[inline(always)]
+    fn settle_lane(&mut self, lane: usize, pairs: &[Pair], points: &mut [Point]) {
+        let Found { eights, in_use, touching, number, approach, too_fast, .. } = &mut *self.found;
+        let eight = &mut eights[*in_use];
+        let of_list = touching[eight.touching[lane] as usize].pair as usize;
+        let (pair, point) = (&pairs[of_list], &mut points[eight.point[lane] as usize]);
+        let (travel, way) = (self.asked.travel[lane], self.asked.way[lane]);
+        approach.known[lane] = 0.0;
+        if eight.depth[lane] > 0.0 {
+            point.quiet = 0.0;
+            number[of_list] = eight.touching[lane];
+            if eight.friction[lane] > 0.0
+                && let Some(stretch) = self.springs.take(&eight.spring(lane, pair))
+            {
+                eight.remember(lane, stretch);
+                approach.known[lane] = 1.0;
+            }
+        } else {
+            point.quiet = travel - eight.depth[lane];
+            eight.depth[lane] = 0.0;
+        }
+        if way > pair.limit && travel + way > point.quiet && too_fast.is_none() {
+            *too_fast = Some(pair_too_fast(self.moment.model, pair, point, way));
+        }
+    }
+}
+
 /// A pair that is too fast, with one of its points.
-fn too_fast(model: &Model, pair: &Pair, point: &Point, way: f64) -> TooFast {
+fn pair_too_fast(model: &Model, pair: &Pair, point: &Point, way: f64) -> TooFast {
     let (body, other) = match pair.kind {
         ContactKind::SecondInFirst => (pair.second, pair.first),
         _ => (pair.first, pair.second),
@@ -196,50 +290,35 @@ fn too_fast(model: &Model, pair: &Pair, point: &Point, way: f64) -> TooFast {
     TooFast { body, particle, other, way, limit: pair.limit }
 }
 
-/// The spring of a contact.
-fn spring(model: &Model, pair: &Pair, contact: &Contact) -> PairSpring {
-    let index = |body: u32, slot| model.bodies[body as usize].shape.particles().index_in(slot);
-    let Pair { first, second, kind, .. } = *pair;
-    let (particle, other) = match kind {
-        ContactKind::Spheres => (index(first, contact.particle), index(second, contact.other)),
-        ContactKind::SecondInFirst => (index(second, contact.particle), 0),
-        ContactKind::Wall | ContactKind::FirstInSecond => (index(first, contact.particle), 0),
-    };
-    PairSpring { first, second, kind, particle, other, stretch: contact.stretch * contact.held }
-}
-
-/// What stands for a wall as second body.
-static STILL: std::sync::LazyLock<Pose> = std::sync::LazyLock::new(Pose::default);
-
-/// The bodies of a pair.
-fn ends<'a>(poses: &'a [Pose], pair: &Pair) -> (&'a Pose, &'a Pose) {
-    let second = if pair.kind == ContactKind::Wall { &STILL } else { &poses[pair.second as usize] };
-    (&poses[pair.first as usize], second)
-}
-
 /// Two bodies where they are.
 struct Sides<'a> {
     model: &'a Model,
     first: &'a Pose,
     second: &'a Pose,
-    /// Time since the latest kick (s).
-    since: f64,
+    /// How far both have come together (m).
+    travel: f64,
+    /// How far the one can come against the other in a step (m), at most.
+    way: f64,
 }
 
 impl<'a> Sides<'a> {
+    #[inline(always)]
     fn of(moment: &Moment<'a>, pair: &Pair) -> Self {
-        let (first, second) = ends(moment.poses, pair);
-        Self { model: moment.model, first, second, since: moment.since }
+        let first = pose::of(moment.poses, pair.first);
+        let second = pose::of(moment.poses, pair.second_body());
+        let travel = first.travel + second.travel;
+        let sides =
+            Self { model: moment.model, first, second, travel, way: first.way + second.way };
+        if sides.way <= pair.limit {
+            sides
+        } else {
+            Self { way: sides.relative_way(pair), ..sides }
+        }
     }
 
-    /// How far the one can come against the other in a step (m), at most.
-    fn way(&self, pair: &Pair) -> f64 {
+    /// The way of the one against the other; what both have in common does not count.
+    fn relative_way(&self, pair: &Pair) -> f64 {
         let Self { model, first, second, .. } = self;
-        let most = first.way + second.way;
-        if most <= pair.limit {
-            return most;
-        }
-        // what both have in common does not count
         let rim = |pose: &Pose, body: u32| {
             pose.angular_velocity.length() * model.bodies[body as usize].extent
         };
@@ -247,215 +326,93 @@ impl<'a> Sides<'a> {
         model.dt * ((first.velocity - second.velocity).length() + turning)
     }
 
-    fn travel(&self) -> f64 {
-        self.first.travel + self.second.travel
+    /// Whether one body could pass through the other at a point within a step. What the lists remember of that, until when it is
+    /// `quiet`, is no reason to refuse a step: it is looked at anew.
+    #[inline(always)]
+    fn passes(&self, pair: &Pair, quiet: f64) -> bool {
+        self.way > pair.limit && self.travel + self.way > quiet
     }
 
-    /// The contact of a listed point, or how far it is from one (m).
+    /// Puts what a contact is found from into a lane.
     #[inline(always)]
-    fn touch(&self, pair: &Pair, point: &mut Point) -> Result<Touch, f64> {
+    fn approach(&self, pair: &Pair, point: &mut Point, lane: usize, into: &mut Approach) {
         let (model, p, q) = (self.model, self.first, self.second);
         let a = &model.bodies[pair.first as usize];
-        let (at, normal, depth) = match pair.kind {
+        let b = || &model.bodies[pair.second as usize];
+        let (place, apart, reach) = match pair.kind {
             ContactKind::Wall => {
                 let wall = &model.walls[pair.second as usize];
                 let place = p.place(a, point.particle);
-                let depth = pair.reach + wall.depth(place);
-                (place - wall.normal * pair.reach, wall.normal, depth)
+                (place, wall.normal, pair.reach + wall.depth(place))
             }
             ContactKind::Spheres => {
-                let b = &model.bodies[pair.second as usize];
                 let place = p.place(a, point.particle);
-                let apart = place - q.place(b, point.other);
-                let distance = apart.length_squared().sqrt();
-                let depth = pair.reach - distance;
-                if depth <= 0.0 {
-                    return Err(-depth);
-                }
-                // centres at one place are pushed apart as their bodies are, or upwards
-                let normal = if distance > 0.0 {
-                    apart / distance
-                } else {
-                    (p.position - q.position).try_normalize().unwrap_or(DVec3::Y)
-                };
-                (place - normal * (list::radius(a) - 0.5 * depth), normal, depth)
+                let apart = place - q.place(b(), point.other);
+                (place, self.apart(apart), pair.reach)
             }
-            ContactKind::FirstInSecond => {
-                let b = &model.bodies[pair.second as usize];
-                let (at, out, depth) = touch_mesh(pair, point, (a, p), (b, q))?;
-                (at, out, depth)
-            }
+            ContactKind::FirstInSecond => touch_mesh(pair, point, (a, p), (b(), q)),
             ContactKind::SecondInFirst => {
-                let b = &model.bodies[pair.second as usize];
-                let (at, out, depth) = touch_mesh(pair, point, (b, q), (a, p))?;
-                (at, -out, depth)
+                let (place, out, depth) = touch_mesh(pair, point, (b(), q), (a, p));
+                (place, -out, depth)
             }
         };
-        if depth <= 0.0 {
-            return Err(-depth);
-        }
-        Ok(Touch { normal, depth, arm: at - p.position, other_arm: at - q.position })
+        set(&mut into.place, lane, place);
+        set(&mut into.apart, lane, apart);
+        into.reach[lane] = reach;
+        set(&mut into.position, lane, p.position);
+        set(&mut into.other_position, lane, q.position);
+        set(&mut into.drift, lane, p.drift_velocity - q.drift_velocity);
+        set(&mut into.spin, lane, p.drift_spin);
+        set(&mut into.other_spin, lane, q.drift_spin);
     }
 
-    /// The contact of a point that touches, with the spring that it had.
+    /// From the one sphere to the other. Centres at one place are pushed apart as their bodies are, or upwards.
     #[inline(always)]
-    fn contact(
-        &self,
-        pair: &Pair,
-        point: &Point,
-        touch: Touch,
-        springs: &mut OldSprings,
-    ) -> Contact {
-        let other = if pair.kind == ContactKind::Spheres { point.other } else { 0 };
-        let mut contact = Contact {
-            touch,
-            before: DVec3::ZERO,
-            stretch: DVec3::ZERO,
-            held: 0.0,
-            weight: self.weight(pair, point),
-            particle: point.particle,
-            other,
-        };
-        // a new spring is held where it is found
-        if pair.law.friction > 0.0
-            && let Some(stretch) = springs.take(pair, &contact)
-        {
-            contact.before = stretch;
-            let mount = self.mount(pair, touch.depth);
-            contact.carry(&mount, self.first, self.second, self.since);
+    fn apart(&self, apart: DVec3) -> DVec3 {
+        if apart.length_squared() > 0.0 {
+            return apart;
         }
-        contact
+        let way = self.first.position - self.second.position;
+        way.try_normalize().unwrap_or(DVec3::Y) * f64::MIN_POSITIVE.sqrt()
     }
 
-    /// The weight of the particle that touches.
-    fn weight(&self, pair: &Pair, point: &Point) -> f64 {
-        let body = match pair.kind {
-            ContactKind::Spheres | ContactKind::Wall => return 1.0,
-            ContactKind::FirstInSecond => pair.first,
-            ContactKind::SecondInFirst => pair.second,
+    /// Puts the bodies, the particles and the law into a lane.
+    #[inline(always)]
+    fn take_law(&self, pair: &Pair, point: &Point, lane: usize, into: &mut Eight) {
+        let index = |body: u32, slot| self.particles(body).index_in(slot);
+        let Pair { first, second, kind, law, .. } = pair;
+        let (particle, other) = match kind {
+            ContactKind::Spheres => (index(*first, point.particle), index(*second, point.other)),
+            ContactKind::SecondInFirst => (index(*second, point.particle), 0),
+            ContactKind::Wall | ContactKind::FirstInSecond => (index(*first, point.particle), 0),
         };
-        let particles = self.model.bodies[body as usize].shape.particles();
-        if particles.is_weighted() {
-            particles.weight(particles.index_in(point.particle) as usize)
-        } else {
-            1.0
-        }
-    }
-
-    /// How the point of a contact is fixed to the bodies.
-    fn mount(&self, pair: &Pair, depth: f64) -> Mount {
-        let radius = |body: u32| list::radius(&self.model.bodies[body as usize]) - 0.5 * depth;
-        let (offset, other_offset) = match pair.kind {
+        (into.particle[lane], into.other[lane]) = (particle, other);
+        (into.first[lane], into.second[lane]) = (*first, pair.second_body());
+        let weight = match kind {
+            ContactKind::Spheres | ContactKind::Wall => 1.0,
+            ContactKind::FirstInSecond => self.particles(*first).weight(particle as usize),
+            ContactKind::SecondInFirst => self.particles(*second).weight(particle as usize),
+        };
+        (into.radius[lane], into.other_radius[lane]) = match kind {
             ContactKind::Wall | ContactKind::FirstInSecond => (pair.reach, 0.0),
             ContactKind::SecondInFirst => (0.0, pair.reach),
-            ContactKind::Spheres => (radius(pair.first), radius(pair.second)),
+            ContactKind::Spheres => (self.radius(*first), self.radius(*second)),
         };
-        Mount { kind: pair.kind, offset, other_offset }
-    }
-}
-
-/// Where a particle touches the mesh of a body, the direction out of that, and how deep (m); or how far it is from there (m).
-fn touch_mesh(
-    pair: &Pair,
-    point: &mut Point,
-    (body, pose): (&BodyModel, &Pose),
-    (other, other_pose): (&BodyModel, &Pose),
-) -> Result<(DVec3, DVec3, f64), f64> {
-    let place = pose.place(body, point.particle);
-    let inward = other_pose.rotation.transpose() * (place - other_pose.position);
-    let within = pair.reach + pair.margin;
-    let nearest = other.solid.as_ref().and_then(|solid| solid.query(inward, point.other, within));
-    let Some(nearest) = nearest else { return Err(pair.margin) };
-    point.other = nearest.triangle;
-    let depth = pair.reach - nearest.distance;
-    if depth <= 0.0 {
-        return Err(-depth);
-    }
-    let out = other_pose.rotation * nearest.gradient;
-    Ok((place - out * pair.reach, out, depth))
-}
-
-/// The springs of the latest kick, taken in their order.
-struct OldSprings<'a> {
-    model: &'a Model,
-    old: &'a [PairSpring],
-    /// Energy (J) of those that have come loose, by body of the chunk.
-    released: Vec<f64>,
-    body: usize,
-}
-
-impl<'a> OldSprings<'a> {
-    /// Those of the chunk whose first body is number `body`, none released; `released` is room.
-    fn of_chunk(moment: &Moment<'a>, body: usize, mut released: Vec<f64>) -> Self {
-        let before = |end: usize| moment.springs.partition_point(|s| (s.first as usize) < end);
-        released.clear();
-        released.resize(CHUNK, 0.0);
-        let old = &moment.springs[before(body)..before(body + CHUNK)];
-        Self { model: moment.model, old, released, body }
+        into.kind[lane] = f64::from(*kind as u8);
+        into.stiffness[lane] = weight * law.stiffness;
+        into.damping[lane] = weight * law.damping;
+        into.friction[lane] = law.friction;
+        into.friction_spring[lane] = weight * law.friction_spring;
+        into.friction_damping[lane] = weight * law.friction_damping;
+        into.has_friction |= law.friction > 0.0;
+        into.has_belt |= self.first.belt != self.second.belt;
     }
 
-    /// The stretch that a contact had at the latest kick; springs that come before it are released.
-    fn take(&mut self, pair: &Pair, contact: &Contact) -> Option<DVec3> {
-        while let Some((spring, rest)) = self.old.split_first() {
-            match self.compare(spring, pair, contact) {
-                Ordering::Less => self.release(spring),
-                Ordering::Equal => {
-                    self.old = rest;
-                    return Some(spring.stretch);
-                }
-                Ordering::Greater => break,
-            }
-            self.old = rest;
-        }
-        None
+    fn radius(&self, body: u32) -> f64 {
+        list::radius(&self.model.bodies[body as usize])
     }
 
-    fn release_all(&mut self) {
-        for spring in self.old {
-            self.release(spring);
-        }
+    fn particles(&self, body: u32) -> &Particles {
+        self.model.bodies[body as usize].shape.particles()
     }
-
-    fn compare(&self, spring: &PairSpring, pair: &Pair, contact: &Contact) -> Ordering {
-        let of_spring = pair_order(spring.first, spring.second, spring.kind);
-        of_spring.cmp(&pair_order(pair.first, pair.second, pair.kind)).then_with(|| {
-            let (particle, other) = slots(self.model, spring);
-            (particle, other).cmp(&(contact.particle, contact.other))
-        })
-    }
-
-    /// What is left in a spring is lost.
-    fn release(&mut self, spring: &PairSpring) {
-        let stiffness = friction_spring(self.model, spring);
-        let lost = 0.5 * stiffness * spring.stretch.length_squared();
-        self.released[spring.first as usize - self.body] += lost;
-    }
-}
-
-/// Where the shapes keep the particles of a spring.
-fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
-    let slot = |body: u32, index| model.bodies[body as usize].shape.particles().slot_of(index);
-    match spring.kind {
-        ContactKind::Spheres => {
-            (slot(spring.first, spring.particle), slot(spring.second, spring.other))
-        }
-        ContactKind::SecondInFirst => (slot(spring.second, spring.particle), 0),
-        ContactKind::Wall | ContactKind::FirstInSecond => (slot(spring.first, spring.particle), 0),
-    }
-}
-
-/// k_t of a spring (N/m), with the weight of its particle.
-fn friction_spring(model: &Model, spring: &PairSpring) -> f64 {
-    let first = &model.bodies[spring.first as usize];
-    if spring.kind == ContactKind::Wall {
-        return first.contacts[spring.second as usize].friction_spring;
-    }
-    let second = &model.bodies[spring.second as usize];
-    let weight = |body: &BodyModel| body.shape.particles().weight(spring.particle as usize);
-    let weight = match spring.kind {
-        ContactKind::FirstInSecond => weight(first),
-        ContactKind::SecondInFirst => weight(second),
-        ContactKind::Wall | ContactKind::Spheres => 1.0,
-    };
-    weight * list::law(first, second, spring.kind).friction_spring
 }

@@ -2,7 +2,7 @@
 
 use super::Meeting;
 use super::contact::PairForces;
-use super::find::{Found, NONE};
+use super::find::{Found, NONE, Touching};
 use super::list::Lists;
 use crate::parallel::{self, CHUNK};
 use crate::{BodyForces, Model, Wrench};
@@ -50,24 +50,16 @@ impl BodySum {
 }
 
 impl Meeting {
-    /// Sums up what the latest push does to each body: first the pairs that it is the first of, then those
-    /// that it is the second of, in the order of the other. After a first look there are totals alone.
-    pub(super) fn gather<const FIRST: bool>(&mut self) {
+    /// Sets the velocities to those in the middle of the kick that a first look gives over the time `h` (s).
+    pub(super) fn foretell(&mut self, model: &Model, others: &[BodyForces], h: f64) {
         let (found, lists) = (&self.found, &self.lists);
-        self.sums.resize(self.poses.len(), BodySum::default());
-        parallel::each_body(&mut self.sums, |body, sums| {
-            gather_chunk::<FIRST>(found, lists, body, sums);
-        });
-    }
-
-    /// Sets the velocities to those in the middle of the kick that the latest sums give over the time `h` (s).
-    pub(super) fn half_kick(&mut self, model: &Model, others: &[BodyForces], h: f64) {
-        let sums = &self.sums;
         parallel::each_body(&mut self.poses, |first, poses| {
+            let mut sums = Sums::of_chunk(found, lists, first);
             for (index, pose) in (first..).zip(poses) {
+                let sum = sums.next::<true>(index);
                 let body = &model.bodies[index];
-                if body.is_free() && sums[index].all != Wrench::default() {
-                    let wrench = sums[index].all + others[index].contact();
+                if body.is_free() && sum.all != Wrench::default() {
+                    let wrench = sum.all + others[index].contact();
                     pose.velocity += wrench.force * (0.5 * h / body.mass);
                     let spin = body.angular_velocity(pose.rotation, wrench.torque);
                     pose.angular_velocity += spin * (0.5 * h);
@@ -76,11 +68,13 @@ impl Meeting {
         });
     }
 
-    /// Adds the latest sums to the forces of the bodies.
+    /// Adds what the latest push does to the forces of the bodies.
     pub(super) fn give(&self, forces: &mut [BodyForces]) {
-        let sums = &self.sums;
+        let (found, lists) = (&self.found, &self.lists);
         parallel::each_body(forces, |first, forces| {
-            for (sum, forces) in sums[first..].iter().zip(forces) {
+            let mut sums = Sums::of_chunk(found, lists, first);
+            for (index, forces) in (first..).zip(forces) {
+                let sum = sums.next::<false>(index);
                 forces.spring += sum.all - sum.dashpot;
                 forces.dashpot += sum.dashpot;
                 forces.slip += sum.slip;
@@ -91,28 +85,44 @@ impl Meeting {
     }
 }
 
-/// The sums of the bodies of one chunk, the first of which is number `body`.
-fn gather_chunk<const FIRST: bool>(
-    found: &[Found],
-    lists: &Lists,
-    body: usize,
-    sums: &mut [BodySum],
-) {
-    let own = &found[body / CHUNK];
-    for (sum, released) in sums.iter_mut().zip(&own.released) {
-        *sum = BodySum { slip: *released, ..BodySum::default() };
+/// What the latest push does to the bodies of a chunk, one after the other.
+struct Sums<'a> {
+    found: &'a [Found],
+    lists: &'a Lists,
+    /// Of the bodies that are left.
+    released: &'a [f64],
+    touching: &'a [Touching],
+}
+
+impl<'a> Sums<'a> {
+    /// Those of the chunk whose first body is number `body`.
+    fn of_chunk(found: &'a [Found], lists: &'a Lists, body: usize) -> Self {
+        let Found { released, touching, .. } = &found[body / CHUNK];
+        Self { found, lists, released, touching }
     }
-    for touching in &own.touching {
-        sums[touching.first as usize - body].add_first::<FIRST>(&touching.forces);
-    }
-    for (index, sum) in (body..).zip(sums) {
-        let range = lists.starts[index] as usize..lists.starts[index + 1] as usize;
-        for &(chunk, pair) in &lists.seconds[range] {
-            let found = &found[chunk as usize];
+
+    /// What the next body feels, number `index`: first the pairs that it is the first of, then those that it is the second of, in
+    /// the order of the other. After a first look there are totals alone.
+    fn next<const FIRST: bool>(&mut self, index: usize) -> BodySum {
+        let mut sum = BodySum::default();
+        if let Some((&slip, rest)) = self.released.split_first() {
+            sum.slip = slip;
+            self.released = rest;
+        }
+        while let Some((touching, rest)) = self.touching.split_first()
+            && touching.first as usize == index
+        {
+            sum.add_first::<FIRST>(&touching.forces);
+            self.touching = rest;
+        }
+        let range = self.lists.starts[index] as usize..self.lists.starts[index + 1] as usize;
+        for &(chunk, pair) in &self.lists.seconds[range] {
+            let found = &self.found[chunk as usize];
             let number = found.number[pair as usize];
             if number != NONE {
                 sum.add_second::<FIRST>(&found.touching[number as usize].forces);
             }
         }
+        sum
     }
 }

@@ -37,6 +37,14 @@ pub(super) struct Pair {
     pub law: ContactLaw,
 }
 
+impl Pair {
+    /// The second body; of a wall a number that no body has.
+    #[inline(always)]
+    pub fn second_body(&self) -> u32 {
+        if self.kind == ContactKind::Wall { u32::MAX } else { self.second }
+    }
+}
+
 /// Two particles, or a particle and a mesh or wall, that may touch soon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Point {
@@ -53,6 +61,8 @@ pub(super) struct Point {
 pub(super) struct Near {
     pub pairs: Vec<Pair>,
     pub points: Vec<Point>,
+    /// How often they have been listed.
+    pub made: u64,
     /// Those of the list before.
     old_pairs: Vec<Pair>,
     old_points: Vec<Point>,
@@ -110,6 +120,7 @@ impl Lists {
             std::mem::swap(&mut near.points, &mut near.old_points);
             near.pairs.clear();
             near.points.clear();
+            near.made += 1;
             let first = (index * CHUNK) as u32;
             let until = (first + CHUNK as u32).min(bodies.len() as u32);
             let mut pairs = &pairs[pairs.partition_point(|pair| pair[0] < first)..];

@@ -11,14 +11,15 @@ mod find;
 mod gather;
 mod grid;
 mod list;
+mod mesh;
 mod pose;
+mod springs;
 mod start;
 
 use fearless_simd::{Level, Simd, dispatch};
 
 pub(crate) use self::find::TooFast;
 use self::find::{Found, Moment};
-use self::gather::BodySum;
 use self::list::Lists;
 pub(crate) use self::list::can_touch;
 use self::pose::Pose;
@@ -33,8 +34,6 @@ pub(crate) struct Meeting {
     lists: Lists,
     /// Contacts, one entry a chunk of bodies.
     found: Vec<Found>,
-    /// What each body feels of it.
-    sums: Vec<BodySum>,
 }
 
 /// Contact forces between bodies, and between spheres and walls, added to those of [`contact`](super::contact()). `h` (s) is the
@@ -46,17 +45,16 @@ pub fn meet(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
     }
     let meeting = &mut scratch.meeting;
     meeting.place(model, state);
-    meeting.find(model, &state.pair_springs, h);
     // spheres meet walls by another law
     let is_damped =
         |body: &BodyModel| body.pair_material.is_damped() || (body.has_spheres() && body.is_damped);
     if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
-        meeting.push::<true>();
-        meeting.gather::<true>();
-        meeting.half_kick(model, &scratch.forces, h);
+        meeting.find::<true>(model, &state.pair_springs, h);
+        meeting.foretell(model, &scratch.forces, h);
+        meeting.push();
+    } else {
+        meeting.find::<false>(model, &state.pair_springs, h);
     }
-    meeting.push::<false>();
-    meeting.gather::<false>();
     meeting.give(&mut scratch.forces);
 }
 
@@ -83,24 +81,21 @@ impl Meeting {
         }
     }
 
-    fn find(&mut self, model: &Model, springs: &[PairSpring], since: f64) {
+    /// Finds what touches, and its forces. A first look is one at the velocities before the kick.
+    fn find<const FIRST: bool>(&mut self, model: &Model, springs: &[PairSpring], since: f64) {
         let moment = Moment { model, poses: &self.poses, springs, since };
         self.found.resize_with(self.lists.chunks.len(), Found::default);
         parallel::each_of_two(&mut self.found, &mut self.lists.chunks, |index, found, near| {
-            at_full_width(
-                #[inline(always)]
-                || found.find(near, &moment, index * CHUNK),
-            );
+            let body = index * CHUNK;
+            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.find::<_, FIRST>(simd, near, &moment, body)));
         });
     }
 
-    fn push<const FIRST: bool>(&mut self) {
-        let (poses, chunks) = (&self.poses, &self.lists.chunks);
-        parallel::each(&mut self.found, |index, found| {
-            at_full_width(
-                #[inline(always)]
-                || found.push::<FIRST>(&chunks[index], poses),
-            );
+    /// The forces of what touches, with the velocities of the poses as they are.
+    fn push(&mut self) {
+        let poses = &self.poses;
+        parallel::each(&mut self.found, |_, found| {
+            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.push(simd, poses)));
         });
     }
 
@@ -115,9 +110,8 @@ impl Meeting {
             Integrator::Euler => model.dt,
         };
         self.place(model, state);
-        self.find(model, &state.pair_springs, since);
-        let chunks = self.found.iter().zip(&self.lists.chunks);
-        chunks.map(|(found, near)| found.elastic_energy(near)).sum()
+        self.find::<true>(model, &state.pair_springs, since);
+        self.found.iter().map(Found::elastic_energy).sum()
     }
 
     /// The first two bodies that could pass through each other in a step.
@@ -126,17 +120,12 @@ impl Meeting {
     }
 
     /// The springs that go on after the latest push.
-    pub fn keep(&mut self, model: &Model, springs: &mut Vec<PairSpring>) {
+    pub fn keep(&mut self, springs: &mut Vec<PairSpring>) {
         let chunks = &self.lists.chunks;
-        parallel::each(&mut self.found, |index, found| found.keep(&chunks[index], model));
+        parallel::each(&mut self.found, |index, found| found.keep(&chunks[index]));
         springs.clear();
         for found in &self.found {
             springs.extend_from_slice(&found.springs);
         }
     }
-}
-
-/// Runs `work` with all that the processor can do. It changes no bit.
-fn at_full_width(work: impl FnOnce()) {
-    dispatch!(Level::new(), simd => simd.vectorize(work));
 }

@@ -5,7 +5,7 @@ use glam::{DMat3, DQuat, DVec3};
 use crate::{BodyModel, BodyState, Integrator, Model, Motion};
 
 /// A body at one place, with the velocities that its contacts are to feel.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Pose {
     pub position: DVec3,
     pub rotation: DMat3,
@@ -25,6 +25,28 @@ pub(super) struct Pose {
     pub until: f64,
     /// No point of the body comes farther than this in a step (m).
     pub way: f64,
+}
+
+/// What stands for a wall as second body.
+static STILL: Pose = Pose {
+    position: DVec3::ZERO,
+    rotation: DMat3::ZERO,
+    velocity: DVec3::ZERO,
+    angular_velocity: DVec3::ZERO,
+    drift_velocity: DVec3::ZERO,
+    drift_spin: DVec3::ZERO,
+    belt: DVec3::ZERO,
+    orientation: DQuat::IDENTITY,
+    travel: 0.0,
+    skin: 0.0,
+    until: 0.0,
+    way: 0.0,
+};
+
+/// The body of a number, or what stands for a wall where it is none.
+#[inline(always)]
+pub(super) fn of(poses: &[Pose], index: u32) -> &Pose {
+    poses.get(index as usize).unwrap_or(&STILL)
 }
 
 impl Pose {
@@ -82,12 +104,6 @@ impl Pose {
     #[inline(always)]
     pub fn place(&self, body: &BodyModel, slot: u32) -> DVec3 {
         self.position + self.rotation * body.shape.particles().at(slot)
-    }
-
-    /// The velocity of the body at an arm from its centre of mass.
-    #[inline(always)]
-    pub fn velocity_at(&self, arm: DVec3) -> DVec3 {
-        self.velocity + self.angular_velocity.cross(arm)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::contact::Contact;
 use super::list::{self, Pair};
 use super::{Meeting, crowd};
 use crate::stage::Placed;
@@ -40,15 +39,19 @@ pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<Overlap> {
 fn by_contact(model: &Model, state: &State) -> Vec<Overlap> {
     let mut meeting = Meeting::default();
     meeting.place(model, state);
-    meeting.find(model, &[], 0.0);
-    let mut overlaps = Vec::new();
-    meeting.each_touching(|pair, contacts| {
-        let depth = contacts.iter().fold(0.0f64, |depth, contact| depth.max(contact.touch.depth));
-        if pair.kind != ContactKind::Wall && depth > DEEP * grain(model, pair) {
-            overlaps.push((pair.first, pair.second, depth));
+    meeting.find::<true>(model, &[], 0.0);
+    let mut overlaps: Vec<Overlap> = Vec::new();
+    meeting.each_contact(|pair, _, depth| {
+        if pair.kind == ContactKind::Wall || depth <= DEEP * grain(model, pair) {
+            return;
+        }
+        match overlaps.last_mut() {
+            Some(last) if (last.0, last.1) == (pair.first, pair.second) => {
+                last.2 = last.2.max(depth)
+            }
+            _ => overlaps.push((pair.first, pair.second, depth)),
         }
     });
-    overlaps.dedup_by_key(|overlap| (overlap.0, overlap.1));
     overlaps
 }
 
@@ -66,20 +69,18 @@ pub(crate) fn push_apart(model: &Model, state: &mut State) -> bool {
     let mut ways = vec![(DVec3::ZERO, 0.0); model.bodies.len()];
     for _ in 0..ROUNDS {
         meeting.place(model, state);
-        meeting.find(model, &[], 0.0);
+        meeting.find::<true>(model, &[], 0.0);
         ways.fill((DVec3::ZERO, 0.0));
         let mut is_free = true;
-        meeting.each_touching(|pair, contacts| {
+        meeting.each_contact(|pair, normal, depth| {
             let (a, b) = (pair.first as usize, pair.second as usize);
             let weight = |body: usize| model.bodies[body].pair_material.inverse_mass;
             let of_second = if pair.kind == ContactKind::Wall { 0.0 } else { weight(b) };
             let sum = weight(a) + of_second;
-            for Contact { touch, .. } in contacts {
-                is_free &= touch.depth <= APART * grain(model, pair);
-                give_way(&mut ways[a], touch.normal * (touch.depth * weight(a) / sum));
-                if of_second > 0.0 {
-                    give_way(&mut ways[b], touch.normal * (-touch.depth * of_second / sum));
-                }
+            is_free &= depth <= APART * grain(model, pair);
+            give_way(&mut ways[a], normal * (depth * weight(a) / sum));
+            if of_second > 0.0 {
+                give_way(&mut ways[b], normal * (-depth * of_second / sum));
             }
         });
         for ((body, body_state), way) in model.bodies.iter().zip(&mut state.bodies).zip(&mut ways) {
@@ -116,13 +117,10 @@ fn grain(model: &Model, pair: &Pair) -> f64 {
 }
 
 impl Meeting {
-    /// Calls `visit` with each pair that has contacts, and these.
-    fn each_touching(&self, mut visit: impl FnMut(&Pair, &[Contact])) {
+    /// Calls `visit` with the pair, the normal and the depth (m) of each contact.
+    fn each_contact(&self, mut visit: impl FnMut(&Pair, DVec3, f64)) {
         for (found, near) in self.found.iter().zip(&self.lists.chunks) {
-            for touching in &found.touching {
-                let contacts = &found.contacts[touching.range()];
-                visit(&near.pairs[touching.pair as usize], contacts);
-            }
+            found.each_contact(near, &mut visit);
         }
     }
 }
