@@ -34,6 +34,7 @@
 //! ```
 #![warn(missing_debug_implementations)]
 
+mod batch;
 mod builder;
 mod distance;
 mod energy;
@@ -57,6 +58,7 @@ mod surface;
 mod wall;
 mod world;
 
+pub use batch::{Batch, each_batch};
 pub use builder::{Body, WorldBuilder};
 pub use distance::{Nearest, SignedDistance, SurfaceError};
 pub use energy::Energy;

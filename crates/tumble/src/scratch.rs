@@ -2,27 +2,24 @@
 
 use glam::DVec3;
 
+use crate::FrictionSpring;
+use crate::batch::Room;
 use crate::parallel::CHUNK;
-use crate::stage::{Meeting, Touching};
-use crate::{FrictionSpring, Tally};
+use crate::stage::Meeting;
 
 /// Room for what is derived within a step. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    /// Which bodies may touch a wall within the step.
+    /// Which bodies may touch a wall or another body within the step.
     pub near: Vec<bool>,
     /// Forces and torques of the latest evaluation, one entry a body.
     pub forces: Vec<BodyForces>,
     /// The friction springs that go on from this evaluation, one list a body.
     pub springs: Vec<Vec<FrictionSpring>>,
-    /// Particles of one body in contact, while they are looked at; one entry a chunk of bodies.
-    pub(crate) touching: Vec<Touching>,
-    /// What chunks of bodies add to the tally.
-    pub(crate) tallies: Vec<Tally>,
+    /// Room for batches of bodies.
+    pub(crate) rooms: Vec<Room>,
     /// Contacts between bodies.
     pub(crate) meeting: Meeting,
-    /// Friction springs of one body to go back to.
-    pub(crate) backup: Vec<FrictionSpring>,
 }
 
 impl Scratch {
@@ -33,7 +30,7 @@ impl Scratch {
             self.forces.resize(body_count, BodyForces::default());
             self.springs.resize_with(body_count, Vec::new);
             self.near.resize(body_count, true);
-            self.touching.resize_with(body_count.div_ceil(CHUNK), Touching::default);
+            self.rooms.resize_with(body_count.div_ceil(CHUNK), Room::default);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The step, as a list of stages.
 
-use crate::{Integrator, Model, Scratch, State, StepError, parallel, stage};
+use crate::{Integrator, Model, Scratch, State, StepError, each_batch, parallel, stage};
 
 /// Advances `state` by one step of `model.dt`.
 ///
@@ -15,36 +15,53 @@ pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(
 
 fn stages(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(), StepError> {
     let h = model.dt;
-    scratch.fit(model.bodies.len());
     match (model.integrator, model.energy_tolerance) {
         (Integrator::Splitting, None) => {
-            stage::reach(model, state, scratch, h);
-            stage::cruise(model, state, scratch, h);
-            stage::fly(model, state, scratch, 0.5 * h);
-            stage::carry(model, state, 0.0, 0.5 * h);
-            stage::contact(model, state, scratch, h);
+            each_batch(model, state, scratch, |batch| {
+                stage::reach(batch, h);
+                stage::cruise(batch, h);
+                stage::fly(batch, 0.5 * h);
+                stage::carry(batch, 0.0, 0.5 * h);
+                stage::contact(batch, h);
+                stage::arrive(batch);
+            });
             stage::meet(model, state, scratch, h);
-            stage::kick(model, state, scratch, h);
-            stage::fly(model, state, scratch, 0.5 * h);
-            stage::carry(model, state, 0.5 * h, h);
+            each_batch(model, state, scratch, |batch| {
+                stage::feel(batch);
+                stage::kick(batch, h);
+                stage::fly(batch, 0.5 * h);
+                stage::carry(batch, 0.5 * h, h);
+                stage::check(batch);
+            });
         }
         (Integrator::Splitting, Some(tolerance)) => {
-            stage::reach(model, state, scratch, h);
-            stage::cruise(model, state, scratch, h);
-            stage::refine(model, state, scratch, tolerance); // the rest of the above, in parts
-            stage::carry(model, state, 0.0, h);
+            each_batch(model, state, scratch, |batch| {
+                stage::reach(batch, h);
+                stage::cruise(batch, h);
+                stage::refine(batch, tolerance); // the rest of the above, in parts
+                stage::carry(batch, 0.0, h);
+                stage::check(batch);
+            });
         }
         (Integrator::Euler, _) => {
-            stage::gravity(model, scratch); // 2
-            stage::drag(model, state, scratch); // 8
-            stage::reach(model, state, scratch, 0.0);
-            stage::contact(model, state, scratch, 0.0); // 9, with 3 and 4
+            each_batch(model, state, scratch, |batch| {
+                stage::gravity(batch); // 2
+                stage::drag(batch); // 8
+                stage::reach(batch, 0.0);
+                stage::contact(batch, 0.0); // 9, with 3 and 4
+                stage::arrive(batch);
+            });
             stage::meet(model, state, scratch, h);
-            stage::euler(model, state, scratch); // 5 to 7
-            stage::carry(model, state, 0.0, h);
+            each_batch(model, state, scratch, |batch| {
+                stage::feel(batch);
+                stage::euler(batch); // 5 to 7
+                stage::carry(batch, 0.0, h);
+                stage::check(batch);
+            });
         }
     }
+    stage::keep(state, scratch);
     state.step += 1;
     state.time = state.step as f64 * model.dt;
-    stage::check(model, state, scratch)
+    stage::refuse(model, state, scratch)
 }

@@ -4,14 +4,15 @@ use std::f64::consts::TAU;
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::{BodyModel, BodyState, Model, Motion, Oscillation, State};
+use crate::{Batch, BodyModel, BodyState, Motion, Oscillation};
 
 /// Moves every body whose motion is prescribed from `from` to `until` (s) after the beginning of the step.
-pub fn carry(model: &Model, state: &mut State, from: f64, until: f64) {
-    for (body, body_state) in model.bodies.iter().zip(&mut state.bodies) {
+pub fn carry(batch: &mut Batch, from: f64, until: f64) {
+    let time = batch.time;
+    for (body, state) in batch.model.bodies[batch.first..].iter().zip(&mut *batch.bodies) {
         if let Motion::Prescribed(given) = &body.motion {
             let swing = given.oscillation.as_ref();
-            advance(body, body_state, swing, (state.time + from, state.time + until));
+            advance(body, state, swing, (time + from, time + until));
         }
     }
 }

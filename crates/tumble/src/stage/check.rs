@@ -3,28 +3,33 @@
 use glam::DMat3;
 
 use super::TooFast;
-use crate::{BodyModel, BodyState, Model, Scratch, State, StepError, parallel};
+use crate::{Batch, BodyModel, BodyState, Model, Scratch, State, StepError};
 
-/// Refuses a state with a number that is NaN or infinite, a particle that has come more than half way from
+/// Looks for a state with a number that is NaN or infinite, a particle that has come more than half way from
 /// one wall to the wall that faces it, and a step that moves a particle that far: both could have
-/// passed through. So could two bodies that move against each other, in one step, by half of what the thinner of them is
-/// thick.
+/// passed through.
+pub fn check(batch: &mut Batch) {
+    let Batch { model, first, bodies, forces, rooms, .. } = batch;
+    let bodies = model.bodies[*first..].iter().zip(&**bodies).zip(&**forces);
+    rooms[0].problem = (*first..).zip(bodies).find_map(|(index, ((body, state), forces))| {
+        let problem = if is_finite(state) { None } else { not_finite(state) };
+        let problem = problem.or_else(|| {
+            let limit = 0.5 * model.gap?;
+            too_deep(model, body, state, forces.max_depth, limit)
+                .or_else(|| too_far(model, body, state, limit))
+        });
+        Some((index, problem?))
+    });
+}
+
+/// Refuses what [`check`] has found at the end of a step, and two bodies that moved against each other, in one step, by half of
+/// what the thinner of them is thick.
 ///
 /// # Errors
 /// [`StepError`] names the step, time, body, particle, quantity and value, and a step that would do.
-pub fn check(model: &Model, state: &State, scratch: &Scratch) -> Result<(), StepError> {
-    let problem_of = |index: usize| {
-        let (body, body_state) = (&model.bodies[index], &state.bodies[index]);
-        let problem = if is_finite(body_state) { None } else { not_finite(body_state) };
-        let problem = problem.or_else(|| {
-            let limit = 0.5 * model.gap?;
-            too_deep(model, body, body_state, scratch.forces[index].max_depth, limit)
-                .or_else(|| too_far(model, body, body_state, limit))
-        });
-        problem.map(|problem| (index, problem))
-    };
-    if let Some((index, problem)) = parallel::first_body(model.bodies.len(), problem_of) {
-        let Problem { quantity, value, particle, limit } = problem;
+pub fn refuse(model: &Model, state: &State, scratch: &mut Scratch) -> Result<(), StepError> {
+    let problem = scratch.rooms.iter_mut().find_map(|room| room.problem.take());
+    if let Some((index, Problem { quantity, value, particle, limit })) = problem {
         return Err(StepError {
             step: state.step,
             time: state.time,
@@ -58,7 +63,9 @@ fn passes_through(model: &Model, state: &State, pair: &TooFast) -> StepError {
     }
 }
 
-struct Problem {
+/// What is wrong with a body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Problem {
     quantity: &'static str,
     value: f64,
     particle: Option<usize>,

@@ -2,12 +2,13 @@
 
 use glam::DMat3;
 
-use crate::{BodyModel, BodyState, Model, Scratch, State, Wrench};
+use crate::{Batch, BodyModel, BodyState, Wrench};
 
 /// Adds up fᵢ = −c vᵢ over the particles of each body, in closed form.
-pub fn drag(model: &Model, state: &State, scratch: &mut Scratch) {
-    let c = model.velocity_damping_stiffness;
-    for ((body, state), forces) in model.bodies.iter().zip(&state.bodies).zip(&mut scratch.forces) {
+pub fn drag(batch: &mut Batch) {
+    let c = batch.model.velocity_damping_stiffness;
+    let bodies = batch.model.bodies[batch.first..].iter().zip(&*batch.bodies);
+    for ((body, state), forces) in bodies.zip(&mut *batch.forces) {
         forces.drag = if c > 0.0 { body_drag(body, state, c) } else { Wrench::default() };
     }
 }

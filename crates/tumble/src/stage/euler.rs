@@ -4,20 +4,23 @@ use glam::{DMat3, DQuat, DVec3};
 
 use super::kick::resist;
 use crate::state::NO_REST;
-use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally, Wrench};
+use crate::{Batch, BodyForces, BodyModel, BodyState, Tally, Wrench};
 
 /// Advances every body by h with the forces of the start of the step.
-pub fn euler(model: &Model, state: &mut State, scratch: &mut Scratch) {
-    for (index, body) in model.bodies.iter().enumerate() {
-        let forces = &scratch.forces[index];
-        if !body.is_free() {
-            state.tally += resist(body, &state.bodies[index], forces, model.dt);
-            continue;
+pub fn euler(batch: &mut Batch) {
+    let h = batch.model.dt;
+    let mut tally = *batch.tally();
+    let bodies = batch.model.bodies[batch.first..].iter().zip(&mut *batch.bodies);
+    let springs = batch.springs.iter_mut().zip(&mut *batch.next);
+    for (((body, state), forces), (springs, next)) in bodies.zip(&*batch.forces).zip(springs) {
+        if body.is_free() {
+            advance(body, state, forces, h, &mut tally);
+            std::mem::swap(springs, next);
+        } else {
+            tally += resist(body, state, forces, h);
         }
-        advance(body, &mut state.bodies[index], forces, model.dt, &mut state.tally);
-        std::mem::swap(&mut state.springs[index], &mut scratch.springs[index]);
     }
-    scratch.meeting.keep(&mut state.pair_springs);
+    *batch.tally() = tally;
 }
 
 /// Advances one body.

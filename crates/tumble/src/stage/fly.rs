@@ -3,27 +3,28 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::flight::{Glide, Turn, free_rotation};
-use crate::{BodyModel, BodyState, Model, Scratch, State, Tally, parallel};
+use crate::{Batch, BodyModel, BodyState, Model};
 
-/// Lets the bodies that cannot touch a wall fly the whole time `h` (s) at once.
-pub fn cruise(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
-    fly_those(model, state, scratch, h, false);
+/// Lets the bodies that cannot touch anything fly the whole time `h` (s) at once.
+pub fn cruise(batch: &mut Batch, h: f64) {
+    fly_those(batch, h, false);
 }
 
-/// Lets the bodies that may touch a wall fly for the time `h` (s).
-pub fn fly(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
-    fly_those(model, state, scratch, h, true);
+/// Lets the bodies that may touch something fly for the time `h` (s).
+pub fn fly(batch: &mut Batch, h: f64) {
+    fly_those(batch, h, true);
 }
 
-fn fly_those(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64, near: bool) {
-    let Scratch { near: is_near, tallies, .. } = scratch;
-    parallel::tally_bodies(&mut state.tally, &mut state.bodies, tallies, |index, body_state| {
-        let body = &model.bodies[index];
-        if is_near[index] != near || !body.is_free() {
-            return Tally::default();
+fn fly_those(batch: &mut Batch, h: f64, near: bool) {
+    let model = batch.model;
+    let bodies = model.bodies[batch.first..].iter().zip(&mut *batch.bodies);
+    let mut lost = batch.rooms[0].tally.drag;
+    for ((body, state), &is_near) in bodies.zip(&*batch.near) {
+        if is_near == near && body.is_free() {
+            lost += fly_body(model, body, state, h);
         }
-        Tally { drag: fly_body(model, body, body_state, h), ..Tally::default() }
-    });
+    }
+    batch.tally().drag = lost;
 }
 
 /// Lets one body fly; returns the energy that drag takes from it (J).

@@ -1,28 +1,26 @@
 //! The kick: contact forces change the momenta of bodies that stand still for it.
 
 use super::contact::Placed;
-use crate::{BodyForces, BodyModel, BodyState, Model, Scratch, State, Tally, parallel};
+use crate::{Batch, BodyForces, BodyModel, BodyState, Tally};
 
 /// v ← v + F h/M, L ← L + τ h, with the contact forces of [`contact`](super::contact()) and [`meet`](super::meet()) over the time
 /// `h` (s).
-pub fn kick(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
-    let Scratch { forces, near, springs, tallies, meeting, .. } = scratch;
-    let (forces, near) = (&*forces, &*near);
-    parallel::tally_bodies(&mut state.tally, &mut state.bodies, tallies, |index, body_state| {
-        let (body, forces) = (&model.bodies[index], &forces[index]);
+pub fn kick(batch: &mut Batch, h: f64) {
+    let mut tally = *batch.tally();
+    let bodies = batch.model.bodies[batch.first..].iter().zip(&mut *batch.bodies);
+    for (((body, state), forces), &near) in bodies.zip(&*batch.forces).zip(&*batch.near) {
         if !body.is_free() {
-            resist(body, body_state, forces, h)
-        } else if near[index] {
-            kick_body(body, body_state, forces, h)
-        } else {
-            Tally::default()
+            tally += resist(body, state, forces, h);
+        } else if near {
+            tally += kick_body(body, state, forces, h);
         }
-    });
-    // the springs of who flies are left alone: there are none
-    for (index, springs) in springs.iter_mut().enumerate().filter(|(index, _)| near[*index]) {
-        std::mem::swap(&mut state.springs[index], springs);
     }
-    meeting.keep(&mut state.pair_springs);
+    *batch.tally() = tally;
+    // the springs of who flies are left alone: there are none
+    let springs = batch.springs.iter_mut().zip(&mut *batch.next);
+    for ((springs, next), _) in springs.zip(&*batch.near).filter(|(_, near)| **near) {
+        std::mem::swap(springs, next);
+    }
 }
 
 /// Kicks one body; returns what its contacts lost.

@@ -17,10 +17,7 @@ use glam::DMat3;
 use super::contact::{Placed, Room, Touching, contact_body};
 use super::fly::fly_body;
 use super::kick::kick_body;
-use crate::parallel::CHUNK;
-use crate::{
-    BodyForces, BodyModel, BodyState, FrictionSpring, Model, Scratch, State, Tally, Wrench,
-};
+use crate::{Batch, BodyForces, BodyModel, BodyState, FrictionSpring, Model, Tally, Wrench};
 
 /// The smallest part of a step, as a power of one half.
 const FINEST: u32 = 24;
@@ -38,22 +35,24 @@ const W5: f64 = 0.798_543_990_934_83;
 
 /// Advances every body that may touch a wall by one step, with what a part of it leaves unaccounted for below
 /// `tolerance` of the energy in play.
-pub fn refine(model: &Model, state: &mut State, scratch: &mut Scratch, tolerance: f64) {
-    for (index, body) in model.bodies.iter().enumerate() {
-        if !scratch.near[index] {
+pub fn refine(batch: &mut Batch, tolerance: f64) {
+    let Batch { model, first, bodies, springs, near, forces, next, rooms, .. } = batch;
+    let Some(room) = rooms.first_mut() else { return };
+    for (index, body) in model.bodies[*first..].iter().take(bodies.len()).enumerate() {
+        if !near[index] {
             continue;
         }
         let mut mover = Mover {
             model,
             body,
-            state: &mut state.bodies[index],
-            springs: &mut state.springs[index],
-            forces: &mut scratch.forces[index],
-            next: &mut scratch.springs[index],
-            touching: &mut scratch.touching[index / CHUNK],
+            state: &mut bodies[index],
+            springs: &mut springs[index],
+            forces: &mut forces[index],
+            next: &mut next[index],
+            touching: &mut room.touching,
             impulse: Wrench::default(),
         };
-        state.tally += mover.in_parts(&mut scratch.backup, tolerance);
+        room.tally += mover.in_parts(&mut room.backup, tolerance);
     }
 }
 

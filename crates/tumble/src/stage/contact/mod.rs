@@ -18,25 +18,24 @@ pub(crate) use friction::Touching;
 pub(in crate::stage) use friction::within;
 pub(crate) use placed::Placed;
 
-use crate::parallel;
-use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, Scratch, State, WallPlane};
+use crate::{Batch, BodyForces, BodyModel, BodyState, FrictionSpring, Model, WallPlane};
 
 /// Contact forces on every body that act over the time `h` (s): dashpots feel the mean of the
 /// velocities before and after. With h = 0 they feel the velocities as they are.
-pub fn contact(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
-    let Scratch { near, forces, springs, touching, .. } = scratch;
-    parallel::each_body_of_two(forces, springs, touching, |first, forces, springs, touching| {
-        for (index, (forces, next)) in (first..).zip(forces.iter_mut().zip(springs)) {
-            let body = &model.bodies[index];
-            if near[index] && !body.has_spheres() {
-                let room = Room { forces, next, touching };
-                contact_body(model, body, &state.bodies[index], &state.springs[index], room, h);
-            } else {
-                forces.clear_contact();
-                next.clear();
-            }
+pub fn contact(batch: &mut Batch, h: f64) {
+    let Batch { model, first, bodies, springs, near, forces, next, rooms, .. } = batch;
+    let bodies = model.bodies[*first..].iter().zip(&**bodies).zip(&**springs).zip(&**near);
+    let touching = &mut rooms[0].touching;
+    for ((((body, state), springs), &near), (forces, next)) in
+        bodies.zip(forces.iter_mut().zip(next.iter_mut()))
+    {
+        if near && !body.has_spheres() {
+            contact_body(model, body, state, springs, Room { forces, next, touching }, h);
+        } else {
+            forces.clear_contact();
+            next.clear();
         }
-    });
+    }
 }
 
 /// Where the contacts of a body go.

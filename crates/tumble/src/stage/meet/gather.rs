@@ -1,11 +1,10 @@
 //! What each body feels of all its contacts with others.
 
-use super::Meeting;
 use super::contact::PairForces;
 use super::find::{Found, NONE, Touching};
 use super::list::Lists;
-use crate::parallel::{self, CHUNK};
-use crate::{BodyForces, Model, Wrench};
+use crate::parallel::CHUNK;
+use crate::{Batch, Wrench};
 
 /// Sums over the contacts of one body.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,46 +48,48 @@ impl BodySum {
     }
 }
 
-impl Meeting {
-    /// Sets the velocities to those in the middle of the kick that a first look gives over the time `h` (s).
-    pub(super) fn foretell(&mut self, model: &Model, others: &[BodyForces], h: f64) {
-        let (found, lists) = (&self.found, &self.lists);
-        parallel::each_body(&mut self.poses, |first, poses| {
-            let mut sums = Sums::of_chunk(found, lists, first);
-            for (index, pose) in (first..).zip(poses) {
-                let sum = sums.next::<true>(index);
-                let body = &model.bodies[index];
-                if body.is_free() && sum.all != Wrench::default() {
-                    let wrench = sum.all + others[index].contact();
-                    pose.velocity += wrench.force * (0.5 * h / body.mass);
-                    let spin = body.angular_velocity(pose.rotation, wrench.torque);
-                    pose.angular_velocity += spin * (0.5 * h);
-                }
-            }
-        });
-    }
+/// What bodies feel of each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Feelings<'a> {
+    pub(super) found: &'a [Found],
+    pub(super) lists: &'a Lists,
+}
 
-    /// Adds what the latest push does to the forces of the bodies.
-    pub(super) fn give(&self, forces: &mut [BodyForces]) {
-        let (found, lists) = (&self.found, &self.lists);
-        parallel::each_body(forces, |first, forces| {
-            let mut sums = Sums::of_chunk(found, lists, first);
-            for (index, forces) in (first..).zip(forces) {
-                let sum = sums.next::<false>(index);
-                forces.spring += sum.all - sum.dashpot;
-                forces.dashpot += sum.dashpot;
-                forces.slip += sum.slip;
-                (forces.belt_power, forces.belt_loss) = (sum.belt_power, sum.belt_loss);
-                forces.max_depth = forces.max_depth.max(sum.max_depth);
-            }
-        });
+/// Sets the velocities that contacts feel to those in the middle of the kick that a first look gives over the time `h` (s).
+pub(super) fn foretell(batch: &mut Batch, h: f64) {
+    let Batch { model, first, poses, forces, feelings, .. } = batch;
+    let mut sums = Sums::of_chunk(*feelings, *first);
+    for ((index, pose), others) in (*first..).zip(poses.iter_mut()).zip(&**forces) {
+        let sum = sums.next::<true>(index);
+        let body = &model.bodies[index];
+        if body.is_free() && sum.all != Wrench::default() {
+            let wrench = sum.all + others.contact();
+            pose.velocity += wrench.force * (0.5 * h / body.mass);
+            let spin = body.angular_velocity(pose.rotation, wrench.torque);
+            pose.angular_velocity += spin * (0.5 * h);
+        }
+    }
+}
+
+/// Adds what [`meet`](super::meet()) has found to the forces of [`contact`](crate::stage::contact()).
+pub fn feel(batch: &mut Batch) {
+    if !batch.model.meets {
+        return;
+    }
+    let mut sums = Sums::of_chunk(batch.feelings, batch.first);
+    for (index, forces) in (batch.first..).zip(&mut *batch.forces) {
+        let sum = sums.next::<false>(index);
+        forces.spring += sum.all - sum.dashpot;
+        forces.dashpot += sum.dashpot;
+        forces.slip += sum.slip;
+        (forces.belt_power, forces.belt_loss) = (sum.belt_power, sum.belt_loss);
+        forces.max_depth = forces.max_depth.max(sum.max_depth);
     }
 }
 
 /// What the latest push does to the bodies of a chunk, one after the other.
 struct Sums<'a> {
-    found: &'a [Found],
-    lists: &'a Lists,
+    feelings: Feelings<'a>,
     /// Of the bodies that are left.
     released: &'a [f64],
     touching: &'a [Touching],
@@ -96,9 +97,9 @@ struct Sums<'a> {
 
 impl<'a> Sums<'a> {
     /// Those of the chunk whose first body is number `body`.
-    fn of_chunk(found: &'a [Found], lists: &'a Lists, body: usize) -> Self {
-        let Found { released, touching, .. } = &found[body / CHUNK];
-        Self { found, lists, released, touching }
+    fn of_chunk(feelings: Feelings<'a>, body: usize) -> Self {
+        let Found { released, touching, .. } = &feelings.found[body / CHUNK];
+        Self { feelings, released, touching }
     }
 
     /// What the next body feels, number `index`: first the pairs that it is the first of, then those that it is the second of, in
@@ -115,9 +116,10 @@ impl<'a> Sums<'a> {
             sum.add_first::<FIRST>(&touching.forces);
             self.touching = rest;
         }
-        let range = self.lists.starts[index] as usize..self.lists.starts[index + 1] as usize;
-        for &(chunk, pair) in &self.lists.seconds[range] {
-            let found = &self.found[chunk as usize];
+        let Feelings { found, lists } = self.feelings;
+        let range = lists.starts[index] as usize..lists.starts[index + 1] as usize;
+        for &(chunk, pair) in &lists.seconds[range] {
+            let found = &found[chunk as usize];
             let number = found.number[pair as usize];
             if number != NONE {
                 sum.add_second::<FIRST>(&found.touching[number as usize].forces);

@@ -20,12 +20,14 @@ use fearless_simd::{Level, Simd, dispatch};
 
 pub(crate) use self::find::TooFast;
 use self::find::{Found, Moment};
+pub(crate) use self::gather::Feelings;
+pub use self::gather::feel;
 use self::list::Lists;
 pub(crate) use self::list::can_touch;
-use self::pose::Pose;
+pub(crate) use self::pose::Pose;
 pub(crate) use self::start::{overlaps, push_apart};
 use crate::parallel::{self, CHUNK};
-use crate::{BodyModel, Integrator, Model, PairSpring, Scratch, State};
+use crate::{Batch, BodyModel, Integrator, Model, PairSpring, Scratch, State, each_batch};
 
 /// Room for contacts between bodies. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -36,40 +38,52 @@ pub(crate) struct Meeting {
     found: Vec<Found>,
 }
 
-/// Contact forces between bodies, and between spheres and walls, added to those of [`contact`](super::contact()). `h` (s) is the
-/// time since the latest kick. Under `splitting` dashpots feel the mean of the velocities before and after the kick, under `euler`
-/// the velocities as they are.
-pub fn meet(model: &Model, state: &State, scratch: &mut Scratch, h: f64) {
+/// Takes note of where the bodies are, and how far they have come.
+pub fn arrive(batch: &mut Batch) {
+    let Batch { model, first, bodies, poses, .. } = batch;
+    for ((index, pose), state) in (*first..).zip(poses.iter_mut()).zip(&**bodies) {
+        *pose = pose.moved(model, index, state);
+    }
+}
+
+/// Contact forces between bodies, and between spheres and walls. `h` (s) is the time since the latest kick. Under `splitting`
+/// dashpots feel the mean of the velocities before and after the kick, under `euler` the velocities as they are.
+pub fn meet(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     if !model.meets {
         return;
     }
-    let meeting = &mut scratch.meeting;
-    meeting.place(model, state);
+    scratch.meeting.list(model, state);
     // spheres meet walls by another law
     let is_damped =
         |body: &BodyModel| body.pair_material.is_damped() || (body.has_spheres() && body.is_damped);
     if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
-        meeting.find::<true>(model, &state.pair_springs, h);
-        meeting.foretell(model, &scratch.forces, h);
-        meeting.push();
+        scratch.meeting.find::<true>(model, &state.pair_springs, h);
+        each_batch(model, state, scratch, |batch| gather::foretell(batch, h));
+        scratch.meeting.push();
     } else {
-        meeting.find::<false>(model, &state.pair_springs, h);
+        scratch.meeting.find::<false>(model, &state.pair_springs, h);
     }
-    meeting.give(&mut scratch.forces);
+}
+
+/// Writes down the tangential springs that go on after the latest push.
+pub fn keep(state: &mut State, scratch: &mut Scratch) {
+    scratch.meeting.keep(&mut state.pair_springs);
 }
 
 impl Meeting {
     /// Puts the bodies where they are, and makes the lists anew where they no longer hold.
     fn place(&mut self, model: &Model, state: &State) {
-        let bodies = &model.bodies;
-        let known = self.poses.len() == bodies.len();
-        if known {
-            parallel::each_body(&mut self.poses, |first, poses| {
-                for (index, pose) in (first..).zip(poses) {
-                    *pose = pose.moved(model, index, &state.bodies[index]);
-                }
-            });
+        if self.poses.len() == model.bodies.len() {
+            for (index, pose) in self.poses.iter_mut().enumerate() {
+                *pose = pose.moved(model, index, &state.bodies[index]);
+            }
         }
+        self.list(model, state);
+    }
+
+    /// Makes the lists anew where they no longer hold for where the bodies are.
+    fn list(&mut self, model: &Model, state: &State) {
+        let known = self.poses.len() == model.bodies.len();
         if !known {
             self.poses.clear();
             let states = state.bodies.iter().enumerate();
@@ -79,6 +93,12 @@ impl Meeting {
         if !known || self.poses.iter().any(|pose| pose.travel > pose.until) {
             self.lists.make(model, &mut self.poses);
         }
+    }
+
+    /// Where the bodies are, and what they feel of each other.
+    pub fn parts(&mut self) -> (&mut [Pose], Feelings<'_>) {
+        let Self { poses, found, lists } = self;
+        (poses, Feelings { found, lists })
     }
 
     /// Finds what touches, and its forces. A first look is one at the velocities before the kick.

@@ -6,7 +6,7 @@ use crate::{BodyModel, BodyState, Integrator, Model, Motion};
 
 /// A body at one place, with the velocities that its contacts are to feel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pose {
+pub(crate) struct Pose {
     pub position: DVec3,
     pub rotation: DMat3,
     pub velocity: DVec3,
