@@ -22,6 +22,8 @@ pub(super) struct Coarse {
     counts: [usize; 3],
     /// Signed distances of the cells' centres, less their rounding (m).
     distances: Vec<f64>,
+    /// That rounding (m).
+    rounding: f64,
 }
 
 impl Coarse {
@@ -30,9 +32,9 @@ impl Coarse {
         let sides = bounds.high - bounds.low;
         let edge = sides.max_element() / CELLS;
         let counts = sides.to_array().map(|side| ((side / edge).ceil() as usize).max(1));
-        let mut grid =
-            Self { low: bounds.low, edge, inverse: 1.0 / edge, counts, distances: Vec::new() };
         let rounding = ROUNDING * sides.max_element();
+        let (low, inverse) = (bounds.low, 1.0 / edge);
+        let mut grid = Self { low, edge, inverse, counts, distances: Vec::new(), rounding };
         grid.distances.reserve_exact(counts.iter().product());
         for z in 0..counts[2] {
             for y in 0..counts[1] {
@@ -51,12 +53,26 @@ impl Coarse {
     /// The signed distance of a point is at least this (m).
     #[inline]
     pub fn at_least(&self, point: DVec3) -> f64 {
+        let (distance, way) = self.nearby(point);
+        distance - way
+    }
+
+    /// The signed distance of a point is at most this (m).
+    #[inline]
+    pub fn at_most(&self, point: DVec3) -> f64 {
+        let (distance, way) = self.nearby(point);
+        distance + 2.0 * self.rounding + way
+    }
+
+    /// The distance that is kept of the cell closest to a point, and how far away its centre is (m).
+    #[inline]
+    fn nearby(&self, point: DVec3) -> (f64, f64) {
         let place = (point - self.low) * self.inverse;
         // the conversion saturates
         let cell = [0, 1, 2].map(|axis| (place[axis] as usize).min(self.counts[axis] - 1));
         let [x, y, z] = cell;
         let distance = self.distances[(z * self.counts[1] + y) * self.counts[0] + x];
-        distance - self.centre(cell).distance(point)
+        (distance, self.centre(cell).distance(point))
     }
 
     /// Bytes in use.

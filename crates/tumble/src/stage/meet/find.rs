@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::contact::{Contact, Mount, PairForces, Touch};
 use super::list::{self, Near, Pair, Point};
+use super::mesh::{Known, Look};
 use super::pose::Pose;
 use crate::parallel::CHUNK;
 use crate::state::pair_order;
@@ -67,6 +68,12 @@ impl Touching {
     }
 }
 
+/// The points of a pair, with what is known of the meshes near them.
+struct Listed<'a> {
+    points: &'a mut [Point],
+    known: &'a mut Known,
+}
+
 /// What contacts are found from.
 #[derive(Clone, Copy)]
 pub(super) struct Moment<'a> {
@@ -95,7 +102,8 @@ impl Found {
             }
             let start = self.contacts.len();
             let points = &mut near.points[pair.start as usize..pair.end as usize];
-            pair.quiet = self.find_pair(pair, points, &sides, &mut springs);
+            let listed = Listed { points, known: &mut near.known };
+            pair.quiet = self.find_pair(pair, listed, &sides, &mut springs);
             if self.contacts.len() > start {
                 self.number[number] = self.touching.len() as u32;
                 self.touching.push(Touching {
@@ -116,17 +124,18 @@ impl Found {
     fn find_pair(
         &mut self,
         pair: &Pair,
-        points: &mut [Point],
+        listed: Listed,
         sides: &Sides,
         springs: &mut OldSprings,
     ) -> f64 {
         let (travel, way) = (sides.travel(), sides.way(pair));
         // what the lists remember is no reason to refuse a step: it is looked at anew
         let passes = |quiet: f64| way > pair.limit && travel + way > quiet;
+        let mut look = Look { pair, known: listed.known, exact: way > pair.limit };
         let mut quiet = f64::INFINITY;
-        for point in points {
+        for point in listed.points {
             if travel >= point.quiet || passes(point.quiet) {
-                match sides.touch(pair, point) {
+                match sides.touch(&mut look, point) {
                     Ok(touch) => {
                         point.quiet = 0.0;
                         self.contacts.push(sides.contact(pair, point, touch, springs));
@@ -253,8 +262,8 @@ impl<'a> Sides<'a> {
 
     /// The contact of a listed point, or how far it is from one (m).
     #[inline(always)]
-    fn touch(&self, pair: &Pair, point: &mut Point) -> Result<Touch, f64> {
-        let (model, p, q) = (self.model, self.first, self.second);
+    fn touch(&self, look: &mut Look, point: &mut Point) -> Result<Touch, f64> {
+        let (model, p, q, pair) = (self.model, self.first, self.second, look.pair);
         let a = &model.bodies[pair.first as usize];
         let (at, normal, depth) = match pair.kind {
             ContactKind::Wall => {
@@ -282,12 +291,12 @@ impl<'a> Sides<'a> {
             }
             ContactKind::FirstInSecond => {
                 let b = &model.bodies[pair.second as usize];
-                let (at, out, depth) = touch_mesh(pair, point, (a, p), (b, q))?;
+                let (at, out, depth) = look.touch_mesh(point, (a, p), (b, q))?;
                 (at, out, depth)
             }
             ContactKind::SecondInFirst => {
                 let b = &model.bodies[pair.second as usize];
-                let (at, out, depth) = touch_mesh(pair, point, (b, q), (a, p))?;
+                let (at, out, depth) = look.touch_mesh(point, (b, q), (a, p))?;
                 (at, -out, depth)
             }
         };
@@ -352,27 +361,6 @@ impl<'a> Sides<'a> {
         };
         Mount { kind: pair.kind, offset, other_offset }
     }
-}
-
-/// Where a particle touches the mesh of a body, the direction out of that, and how deep (m); or how far it is from there (m).
-fn touch_mesh(
-    pair: &Pair,
-    point: &mut Point,
-    (body, pose): (&BodyModel, &Pose),
-    (other, other_pose): (&BodyModel, &Pose),
-) -> Result<(DVec3, DVec3, f64), f64> {
-    let place = pose.place(body, point.particle);
-    let inward = other_pose.rotation.transpose() * (place - other_pose.position);
-    let within = pair.reach + pair.margin;
-    let nearest = other.solid.as_ref().and_then(|solid| solid.query(inward, point.other, within));
-    let Some(nearest) = nearest else { return Err(pair.margin) };
-    point.other = nearest.triangle;
-    let depth = pair.reach - nearest.distance;
-    if depth <= 0.0 {
-        return Err(-depth);
-    }
-    let out = other_pose.rotation * nearest.gradient;
-    Ok((place - out * pair.reach, out, depth))
 }
 
 /// The springs of the latest kick, taken in their order.

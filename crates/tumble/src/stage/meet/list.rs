@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::grid::{Ball, Grid};
+use super::mesh::{Known, NO_PATCH, View};
 use super::pose::Pose;
 use crate::parallel::{self, CHUNK};
 use crate::state::{PairOrder, pair_order};
@@ -42,7 +43,7 @@ pub(super) struct Pair {
 pub(super) struct Point {
     /// Which particle, by slot.
     pub particle: u32,
-    /// Which particle of the other body, by slot; of a mesh, the triangle that was nearest last.
+    /// Which particle of the other body, by slot; of a mesh, which patch of it is known.
     pub other: u32,
     /// No contact until both bodies have travelled so far together (m).
     pub quiet: f64,
@@ -53,9 +54,11 @@ pub(super) struct Point {
 pub(super) struct Near {
     pub pairs: Vec<Pair>,
     pub points: Vec<Point>,
+    pub known: Known,
     /// Those of the list before.
     old_pairs: Vec<Pair>,
     old_points: Vec<Point>,
+    old_known: Known,
     /// Room for slots of particles.
     slots: [Vec<u32>; 2],
 }
@@ -108,8 +111,10 @@ impl Lists {
         parallel::each(&mut self.chunks, |index, near| {
             std::mem::swap(&mut near.pairs, &mut near.old_pairs);
             std::mem::swap(&mut near.points, &mut near.old_points);
+            std::mem::swap(&mut near.known, &mut near.old_known);
             near.pairs.clear();
             near.points.clear();
+            near.known.clear();
             let first = (index * CHUNK) as u32;
             let until = (first + CHUNK as u32).min(bodies.len() as u32);
             let mut pairs = &pairs[pairs.partition_point(|pair| pair[0] < first)..];
@@ -255,21 +260,31 @@ impl Near {
     fn list_particles(&mut self, a: Side, b: Side, key: PairOrder) {
         let Some(solid) = &b.body.solid else { return };
         let (margin, reach) = (a.pose.skin + b.pose.skin, radius(a.body));
-        // places of the frame of `a` in the frame of `b`
-        let turn = b.pose.rotation.transpose() * a.pose.rotation;
-        let way = b.pose.rotation.transpose() * (a.pose.position - b.pose.position);
+        let old = points_of(&self.old_pairs, &self.old_points, key);
+        let view = View::of(a.body, a.pose, b.pose);
+        let Some(margin) = self.known.list(&self.old_known, key, &view, margin) else {
+            for point in old {
+                self.points.push(self.known.carry(&self.old_known, point));
+            }
+            return;
+        };
         let [mut slots, other] = std::mem::take(&mut self.slots);
         slots.clear();
-        let may_touch =
-            |centre, radius| !solid.outside_ball(way + turn * centre, radius + reach + margin);
+        let mut hint = 0;
+        let may_touch = |centre, radius| {
+            let centre = view.way + view.turn * centre;
+            !solid.outside_ball_near(centre, radius + reach + margin, &mut hint)
+        };
         a.body.shape.particles().list_where(may_touch, &mut slots);
-        let old = points_of(&self.old_pairs, &self.old_points, key);
-        let mut old = old.iter().copied().peekable();
+        let mut old = old.iter().peekable();
         for &particle in &slots {
             while old.next_if(|point| point.particle < particle).is_some() {}
-            let known = old.next_if(|point| point.particle == particle);
-            // who is not known is looked at soon
-            self.points.push(known.unwrap_or(Point { particle, other: 0, quiet: 0.0 }));
+            let point = match old.next_if(|point| point.particle == particle) {
+                Some(point) => self.known.carry(&self.old_known, point),
+                // who is not known is looked at soon
+                None => Point { particle, other: NO_PATCH, quiet: 0.0 },
+            };
+            self.points.push(point);
         }
         self.slots = [slots, other];
     }

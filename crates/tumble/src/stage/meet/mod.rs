@@ -11,6 +11,7 @@ mod find;
 mod gather;
 mod grid;
 mod list;
+mod mesh;
 mod pose;
 mod start;
 
