@@ -6,8 +6,10 @@ use glam::DVec3;
 
 use super::tree::Extent;
 
-/// Cells along the longest side of the box.
-const CELLS: f64 = 12.0;
+/// Cells along the longest side of the box, at least and at most.
+const CELLS: [f64; 2] = [12.0, 32.0];
+/// Between these, cells are so many times as large as triangles.
+const COARSENESS: f64 = 3.0;
 /// What rounding may have added to a distance, in units of the box's longest side.
 const ROUNDING: f64 = 1e-12;
 
@@ -27,12 +29,13 @@ pub(super) struct Coarse {
 }
 
 impl Coarse {
-    /// Asks for the signed distance at the centre of each cell of a grid over a box.
-    pub fn over(bounds: &Extent, mut distance: impl FnMut(DVec3) -> f64) -> Self {
+    /// Asks for the signed distance at the centre of each cell of a grid over the box of triangles about as large as `grain` (m).
+    pub fn over(bounds: &Extent, grain: f64, mut distance: impl FnMut(DVec3) -> f64) -> Self {
         let sides = bounds.high - bounds.low;
-        let edge = sides.max_element() / CELLS;
+        let longest = sides.max_element();
+        let edge = longest / (longest / (COARSENESS * grain)).clamp(CELLS[0], CELLS[1]);
         let counts = sides.to_array().map(|side| ((side / edge).ceil() as usize).max(1));
-        let rounding = ROUNDING * sides.max_element();
+        let rounding = ROUNDING * longest;
         let (low, inverse) = (bounds.low, 1.0 / edge);
         let mut grid = Self { low, edge, inverse, counts, distances: Vec::new(), rounding };
         grid.distances.reserve_exact(counts.iter().product());

@@ -124,7 +124,7 @@ impl SignedDistance {
         if made.holes == 0 {
             // the cells come one beside the other
             let mut hint = 0;
-            made.coarse = Some(Coarse::over(&bounds, |point| {
+            made.coarse = Some(Coarse::over(&bounds, made.grain, |point| {
                 made.query(point, hint, f64::INFINITY).map_or(0.0, |nearest| {
                     hint = nearest.triangle;
                     nearest.distance
@@ -153,6 +153,13 @@ impl SignedDistance {
         (nearest.distance < 0.0 || nearest.distance <= within).then_some(nearest)
     }
 
+    /// The signed distance of a point is at least this (m), by a glance.
+    #[inline]
+    pub(crate) fn at_least(&self, point: DVec3) -> f64 {
+        let from_box = self.bounds.distance(point);
+        self.coarse.as_ref().map_or(from_box, |coarse| from_box.max(coarse.at_least(point)))
+    }
+
     /// How far from a point the surface matters (m); `None` where the point surely is farther outside than `within` (m).
     #[inline]
     fn search_radius(&self, point: DVec3, within: f64) -> Option<f64> {
@@ -160,10 +167,7 @@ impl SignedDistance {
         if !point.abs().cmple(DVec3::splat(FARTHEST)).all() {
             return None;
         }
-        let mut at_least = self.bounds.distance(point);
-        if let Some(coarse) = &self.coarse {
-            at_least = at_least.max(coarse.at_least(point));
-        }
+        let at_least = self.at_least(point);
         if at_least > within.max(0.0) {
             return None;
         }

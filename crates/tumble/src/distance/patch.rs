@@ -11,6 +11,8 @@ use super::{Nearest, SignedDistance};
 
 /// Part by which a distance, or a way, may be off by rounding.
 const ROUNDING: f64 = 1e-11;
+/// Part of a squared distance below which rounding does not decide whether something is closer.
+const NEAR: f64 = 0.99;
 /// Patches are kept in single precision: part by which a coordinate may be off.
 const SINGLE: f64 = f32::EPSILON as f64;
 
@@ -62,12 +64,21 @@ impl SignedDistance {
         patch: &mut Patch,
         within: f64,
     ) -> Option<Nearest> {
+        let closest = self.closest_by(point, patch);
+        if let Some(closest) = closest
+            && closest.squared < NEAR * within * within
+        {
+            // what else could say that it is too far away need not be asked
+            return self.answer(point, Some(closest), within);
+        }
         let most = self.search_radius(point, within)?;
-        let closest = match self.closest_by(point, patch) {
-            Some(closest) => (closest.squared <= most * most).then_some(closest),
-            None => return self.query_anew(point, patch, within, most),
-        };
-        self.answer(point, closest, within)
+        match closest {
+            Some(closest) if closest.squared <= most * most => {
+                self.answer(point, Some(closest), within)
+            }
+            Some(_) => None,
+            None => self.query_anew(point, patch, within, most),
+        }
     }
 
     /// The closest triangle, if the patch is enough to tell.

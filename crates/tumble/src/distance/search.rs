@@ -8,6 +8,8 @@ use super::triangle::WIDTH;
 
 /// By how much a squared distance may be larger than that to the box of the triangle, but for what [`super::tree`] adds to boxes.
 const CLOSE: f64 = 1.0 + 1e-12;
+/// Up to this distance more than the closest triangle is looked for, in units of how much farther that is.
+const FAR: f64 = 3.0;
 /// Groups that are remembered.
 pub(super) const KEPT: usize = 4;
 /// No group.
@@ -119,7 +121,9 @@ impl Looking for Wide {
         let least = least(squared);
         if least <= self.best.squared {
             self.best.look_at(group, squared, tree);
-            let farther = self.best.squared.sqrt() + self.wider;
+            let distance = self.best.squared.sqrt();
+            // from afar too much of the surface is about as close
+            let farther = if distance <= FAR * self.wider { distance + self.wider } else { distance };
             self.limit = farther * farther * CLOSE;
         }
         self.around.add(least, group);

@@ -131,6 +131,11 @@ impl Look<'_> {
         let Some(solid) = &other.solid else { return Err(pair.margin) };
         let place = pose.place(body, point.particle);
         let inward = other_pose.rotation.transpose() * (place - other_pose.position);
+        // a glance is often enough
+        let gap = solid.at_least(inward) - pair.reach;
+        if gap > 0.0 && !self.exact {
+            return Err(gap);
+        }
         let patch = self.known.of(point);
         // both may have come far, and yet not against each other
         let gap = patch.at_least(inward) - pair.reach;
