@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::contact::{Contact, Mount, PairForces, Touch};
 use super::list::{self, Near, Pair, Point};
-use super::mesh::{Known, Look};
+use super::mesh::{BLOCK, Known, Look, View};
 use super::pose::Pose;
 use crate::parallel::CHUNK;
 use crate::state::pair_order;
@@ -102,8 +102,15 @@ impl Found {
             }
             let start = self.contacts.len();
             let points = &mut near.points[pair.start as usize..pair.end as usize];
-            let listed = Listed { points, known: &mut near.known };
-            pair.quiet = self.find_pair(pair, listed, &sides, &mut springs);
+            pair.quiet = match pair.kind {
+                ContactKind::Wall | ContactKind::Spheres => {
+                    self.find_pair(pair, points, &sides, &mut springs)
+                }
+                ContactKind::FirstInSecond | ContactKind::SecondInFirst => {
+                    let listed = Listed { points, known: &mut near.known };
+                    self.find_at_mesh(pair, listed, &sides, &mut springs)
+                }
+            };
             if self.contacts.len() > start {
                 self.number[number] = self.touching.len() as u32;
                 self.touching.push(Touching {
@@ -124,18 +131,17 @@ impl Found {
     fn find_pair(
         &mut self,
         pair: &Pair,
-        listed: Listed,
+        points: &mut [Point],
         sides: &Sides,
         springs: &mut OldSprings,
     ) -> f64 {
         let (travel, way) = (sides.travel(), sides.way(pair));
         // what the lists remember is no reason to refuse a step: it is looked at anew
         let passes = |quiet: f64| way > pair.limit && travel + way > quiet;
-        let mut look = Look { pair, known: listed.known, exact: way > pair.limit };
         let mut quiet = f64::INFINITY;
-        for point in listed.points {
+        for point in points {
             if travel >= point.quiet || passes(point.quiet) {
-                match sides.touch(&mut look, point) {
+                match sides.touch(pair, point) {
                     Ok(touch) => {
                         point.quiet = 0.0;
                         self.contacts.push(sides.contact(pair, point, touch, springs));
@@ -149,6 +155,52 @@ impl Found {
             quiet = quiet.min(point.quiet);
         }
         quiet
+    }
+
+    /// Finds the contacts of particles and a mesh; returns until when the pair is quiet (m of travel).
+    #[inline(always)]
+    fn find_at_mesh(
+        &mut self,
+        pair: &Pair,
+        listed: Listed,
+        sides: &Sides,
+        springs: &mut OldSprings,
+    ) -> f64 {
+        let Listed { points, known } = listed;
+        let (travel, way, exact) = (sides.travel(), sides.way(pair), sides.way(pair) > pair.limit);
+        let (clock, until) = known.time(pair.listing, &sides.view(pair), travel);
+        if clock < until && !exact {
+            return travel + (until - clock);
+        }
+        // what the lists remember is no reason to refuse a step: it is looked at anew
+        let passes = |quiet: f64| exact && clock + way > quiet;
+        let mut look = Look { pair, known, exact };
+        let mut quiet = f64::INFINITY;
+        for (number, block) in points.chunks_mut(BLOCK).enumerate() {
+            let mut of_block = *look.known.of_block(pair.listing, number);
+            if clock >= of_block || exact {
+                of_block = f64::INFINITY;
+                for point in block {
+                    if clock >= point.quiet || passes(point.quiet) {
+                        match sides.touch_mesh(&mut look, point) {
+                            Ok(touch) => {
+                                point.quiet = 0.0;
+                                self.contacts.push(sides.contact(pair, point, touch, springs));
+                            }
+                            Err(gap) => point.quiet = clock + gap,
+                        }
+                        if passes(point.quiet) && self.too_fast.is_none() {
+                            self.too_fast = Some(too_fast(sides.model, pair, point, way));
+                        }
+                    }
+                    of_block = of_block.min(point.quiet);
+                }
+                *look.known.of_block(pair.listing, number) = of_block;
+            }
+            quiet = quiet.min(of_block);
+        }
+        *look.known.of_pair(pair.listing) = quiet;
+        travel + (quiet - clock)
     }
 
     /// The forces of all contacts with the velocities of `poses`; of a first look the totals alone.
@@ -262,8 +314,8 @@ impl<'a> Sides<'a> {
 
     /// The contact of a listed point, or how far it is from one (m).
     #[inline(always)]
-    fn touch(&self, look: &mut Look, point: &mut Point) -> Result<Touch, f64> {
-        let (model, p, q, pair) = (self.model, self.first, self.second, look.pair);
+    fn touch(&self, pair: &Pair, point: &Point) -> Result<Touch, f64> {
+        let (model, p, q) = (self.model, self.first, self.second);
         let a = &model.bodies[pair.first as usize];
         let (at, normal, depth) = match pair.kind {
             ContactKind::Wall => {
@@ -289,21 +341,37 @@ impl<'a> Sides<'a> {
                 };
                 (place - normal * (list::radius(a) - 0.5 * depth), normal, depth)
             }
-            ContactKind::FirstInSecond => {
-                let b = &model.bodies[pair.second as usize];
-                let (at, out, depth) = look.touch_mesh(point, (a, p), (b, q))?;
-                (at, out, depth)
-            }
-            ContactKind::SecondInFirst => {
-                let b = &model.bodies[pair.second as usize];
-                let (at, out, depth) = look.touch_mesh(point, (b, q), (a, p))?;
-                (at, -out, depth)
-            }
+            // see `touch_mesh`
+            ContactKind::FirstInSecond | ContactKind::SecondInFirst => return Err(0.0),
         };
         if depth <= 0.0 {
             return Err(-depth);
         }
         Ok(Touch { normal, depth, arm: at - p.position, other_arm: at - q.position })
+    }
+
+    /// The contact of a particle with a mesh, or how far it is from one (m), or less.
+    #[inline(always)]
+    fn touch_mesh(&self, look: &mut Look, point: &mut Point) -> Result<Touch, f64> {
+        let [particles, mesh] = self.at_mesh(look.pair);
+        let (at, out, depth) = look.touch_mesh(point, particles, mesh)?;
+        let normal = if look.pair.kind == ContactKind::SecondInFirst { -out } else { out };
+        let (arm, other_arm) = (at - self.first.position, at - self.second.position);
+        Ok(Touch { normal, depth, arm, other_arm })
+    }
+
+    /// How the particles that may touch a mesh lie in its frame.
+    fn view(&self, pair: &Pair) -> View {
+        let [(body, pose), (_, other)] = self.at_mesh(pair);
+        View::of(body, pose, other)
+    }
+
+    /// The body whose particles may touch a mesh, and that of the mesh.
+    #[inline(always)]
+    fn at_mesh(&self, pair: &Pair) -> [(&BodyModel, &Pose); 2] {
+        let first = (&self.model.bodies[pair.first as usize], self.first);
+        let second = (&self.model.bodies[pair.second as usize], self.second);
+        if pair.kind == ContactKind::SecondInFirst { [second, first] } else { [first, second] }
     }
 
     /// The contact of a point that touches, with the spring that it had.

@@ -27,6 +27,8 @@ pub(super) struct Pair {
     /// Its points, as a range of those of the chunk.
     pub start: u32,
     pub end: u32,
+    /// What is known of the particles and the mesh, by number.
+    pub listing: u32,
     /// No contact until both bodies have travelled so far together (m).
     pub quiet: f64,
     /// How far apart two particles touch, or a particle and a mesh or wall (m).
@@ -45,7 +47,7 @@ pub(super) struct Point {
     pub particle: u32,
     /// Which particle of the other body, by slot; of a mesh, which patch of it is known.
     pub other: u32,
-    /// No contact until both bodies have travelled so far together (m).
+    /// No contact until both bodies have travelled so far together (m); of a mesh, until then on the clock of the pair.
     pub quiet: f64,
 }
 
@@ -185,6 +187,7 @@ impl Near {
                 kind: ContactKind::Wall,
                 start,
                 end: 0,
+                listing: 0,
                 quiet: 0.0,
                 reach: radius,
                 margin: pose.skin,
@@ -202,11 +205,12 @@ impl Near {
         let (a, b) = (at(first), at(second));
         for &kind in kinds(a.body, b.body) {
             let (start, key) = (self.points.len() as u32, pair_order(first, second, kind));
+            let mut listing = 0;
             match kind {
                 ContactKind::Wall => {}
                 ContactKind::Spheres => self.list_spheres(a, b),
-                ContactKind::FirstInSecond => self.list_particles(a, b, key),
-                ContactKind::SecondInFirst => self.list_particles(b, a, key),
+                ContactKind::FirstInSecond => listing = self.list_particles(a, b, key),
+                ContactKind::SecondInFirst => listing = self.list_particles(b, a, key),
             }
             let (law, reach) = (law(a.body, b.body, kind), reach(a.body, b.body, kind));
             // a mesh is asked farther out, so that it need not be asked again so soon
@@ -218,6 +222,7 @@ impl Near {
                 kind,
                 start,
                 end: 0,
+                listing,
                 quiet: 0.0,
                 reach,
                 margin,
@@ -256,9 +261,9 @@ impl Near {
     }
 
     /// Particles of `a` that are near the mesh of `b`: by leaves of the tree, since what is known of each particle from the
-    /// list before is worth more than a look at it now.
-    fn list_particles(&mut self, a: Side, b: Side, key: PairOrder) {
-        let Some(solid) = &b.body.solid else { return };
+    /// list before is worth more than a look at it now. Returns the number of the listing.
+    fn list_particles(&mut self, a: Side, b: Side, key: PairOrder) -> u32 {
+        let Some(solid) = &b.body.solid else { return 0 };
         let (margin, reach) = (a.pose.skin + b.pose.skin, radius(a.body));
         let old = points_of(&self.old_pairs, &self.old_points, key);
         let view = View::of(a.body, a.pose, b.pose);
@@ -266,7 +271,7 @@ impl Near {
             for point in old {
                 self.points.push(self.known.carry(&self.old_known, point));
             }
-            return;
+            return self.known.finish(0);
         };
         let [mut slots, other] = std::mem::take(&mut self.slots);
         slots.clear();
@@ -286,7 +291,9 @@ impl Near {
             };
             self.points.push(point);
         }
+        let count = slots.len();
         self.slots = [slots, other];
+        self.known.finish(count)
     }
 }
 

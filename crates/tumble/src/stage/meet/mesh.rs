@@ -11,7 +11,9 @@ use crate::state::PairOrder;
 /// Of a point: nothing is known of the mesh near it.
 pub(super) const NO_PATCH: u32 = u32::MAX;
 /// How much farther than is needed particles are listed: the list holds the longer.
-const ROOM: f64 = 3.0;
+const ROOM: f64 = 2.0;
+/// Points that are passed over together.
+pub(super) const BLOCK: usize = 16;
 
 /// What is known of meshes and the particles near them.
 #[derive(Clone, Debug, Default)]
@@ -20,15 +22,28 @@ pub(super) struct Known {
     patches: Vec<Patch>,
     /// Of pairs, in their order.
     listings: Vec<Listing>,
+    /// Of blocks of points, pair by pair: no contact until then on the clock of the pair (m).
+    quiet: Vec<f64>,
 }
 
-/// How two bodies lay when the particles of one near the mesh of the other were listed.
+/// What is known of the particles of a body near the mesh of another. It has a clock: the way that particles have come against the mesh.
 #[derive(Clone, Copy, Debug)]
 struct Listing {
     key: PairOrder,
+    /// How the bodies lay when they were listed.
     view: View,
     /// Particles that were no farther away than this and their reach are listed (m).
     margin: f64,
+    /// How the bodies lay last.
+    latest: View,
+    /// How far both together had travelled then (m).
+    travel: f64,
+    /// No particle had come farther against the mesh by then (m).
+    clock: f64,
+    /// No contact until then on that clock (m).
+    quiet: f64,
+    /// Its blocks of points, as a range.
+    blocks: [u32; 2],
 }
 
 /// How the particles of a body lie in the frame of another.
@@ -67,6 +82,7 @@ impl Known {
     pub fn clear(&mut self) {
         self.patches.clear();
         self.listings.clear();
+        self.quiet.clear();
     }
 
     /// How far (m) beyond their reach the particles of a pair must be listed anew; none where those of the list before will do, which holds
@@ -78,17 +94,60 @@ impl Known {
         view: &View,
         margin: f64,
     ) -> Option<f64> {
+        let start = self.quiet.len() as u32;
         let found = before.listings.binary_search_by_key(&key, |listing| listing.key);
-        let listing = found.ok().map(|found| before.listings[found]);
-        if let Some(listing) = listing
-            && view.travel(&listing.view) + margin <= listing.margin
-        {
-            self.listings.push(listing);
+        let Some(old) = found.ok().map(|found| before.listings[found]) else {
+            let (view, margin) = (*view, ROOM * margin);
+            self.listings.push(Listing {
+                key,
+                view,
+                margin,
+                latest: view,
+                travel: f64::NEG_INFINITY,
+                clock: 0.0,
+                quiet: 0.0,
+                blocks: [start, start],
+            });
+            return Some(margin);
+        };
+        if view.travel(&old.view) + margin <= old.margin {
+            let [from, to] = old.blocks.map(|block| block as usize);
+            self.quiet.extend_from_slice(&before.quiet[from..to]);
+            self.listings.push(Listing { blocks: [start, self.quiet.len() as u32], ..old });
             return None;
         }
-        let listing = Listing { key, view: *view, margin: ROOM * margin };
-        self.listings.push(listing);
-        Some(listing.margin)
+        let margin = ROOM * margin;
+        let blocks = [start, start];
+        self.listings.push(Listing { view: *view, margin, quiet: 0.0, blocks, ..old });
+        Some(margin)
+    }
+
+    /// Adds blocks for so many points to the latest listing; returns its number.
+    pub fn finish(&mut self, points: usize) -> u32 {
+        let Some(listing) = self.listings.last_mut() else { return 0 };
+        listing.blocks[1] += points.div_ceil(BLOCK) as u32;
+        self.quiet.resize(listing.blocks[1] as usize, 0.0);
+        self.listings.len() as u32 - 1
+    }
+
+    /// What the clock of a pair says for a view of it, when both bodies have travelled so far together, and until when it is quiet (m).
+    pub fn time(&mut self, listing: u32, view: &View, travel: f64) -> (f64, f64) {
+        let listing = &mut self.listings[listing as usize];
+        // what both have in common does not count
+        let way = view.travel(&listing.latest).min(travel - listing.travel);
+        listing.clock = (listing.clock + way) * (1.0 + 4.0 * f64::EPSILON);
+        (listing.latest, listing.travel) = (*view, travel);
+        (listing.clock, listing.quiet)
+    }
+
+    /// Until when a block of points of a pair is quiet (m).
+    pub fn of_block(&mut self, listing: u32, block: usize) -> &mut f64 {
+        &mut self.quiet[self.listings[listing as usize].blocks[0] as usize + block]
+    }
+
+    /// Until when a pair is quiet (m).
+    pub fn of_pair(&mut self, listing: u32) -> &mut f64 {
+        &mut self.listings[listing as usize].quiet
     }
 
     /// A point of the list before, with what is known of it.
