@@ -21,6 +21,8 @@ const SINGLE: f64 = f32::EPSILON as f64;
 pub(crate) struct Patch {
     /// Where the point was, to single precision (m).
     place: [f32; 3],
+    /// All groups but the first were at least this far away (m).
+    second: f32,
     /// All groups but those that are kept were at least this far away (m).
     others: f32,
     /// The signed distance was at least this (m).
@@ -32,6 +34,7 @@ impl Patch {
     /// Nothing is known.
     pub const NONE: Self = Self {
         place: [0.0; 3],
+        second: f32::NEG_INFINITY,
         others: f32::NEG_INFINITY,
         at_least: f32::NEG_INFINITY,
         groups: [NO_GROUP; KEPT],
@@ -87,9 +90,13 @@ impl SignedDistance {
         if way >= f64::from(patch.others) {
             return None;
         }
-        let closest = self.tree.nearest_of(self.level, point, &patch.groups)?;
-        let distance = closest.squared.sqrt() * (1.0 + ROUNDING);
-        (distance + way < f64::from(patch.others)).then_some(closest)
+        let closest_of = |groups: &[u32], beyond: f32| {
+            let closest = self.tree.nearest_of(self.level, point, groups)?;
+            let distance = closest.squared.sqrt() * (1.0 + ROUNDING);
+            (distance + way < f64::from(beyond)).then_some(closest)
+        };
+        closest_of(&patch.groups[..1], patch.second)
+            .or_else(|| closest_of(&patch.groups, patch.others))
     }
 
     /// A full search, remembered.
@@ -100,13 +107,8 @@ impl SignedDistance {
         within: f64,
         most: f64,
     ) -> Option<Nearest> {
-        let (closest, around) = self.tree.nearest_around(
-            self.level,
-            point,
-            most * most,
-            patch.groups[0],
-            self.grain,
-        );
+        let (closest, around) =
+            self.tree.nearest_around(self.level, point, most * most, patch.groups[0], self.grain);
         let nearest = self.answer(point, closest, within);
         *patch = self.patch(point, &around, nearest.map_or(within, |nearest| nearest.distance));
         nearest
@@ -117,9 +119,11 @@ impl SignedDistance {
         let size = self.reach.max(point.abs().max_element());
         let slack = 2.0 * SINGLE * size + f64::from(f32::MIN_POSITIVE);
         let at_least = if self.coarse.is_some() { distance - slack } else { f64::NEG_INFINITY };
+        let beyond = |squared: f64| below(squared.sqrt() * (1.0 - ROUNDING) - slack);
         Patch {
             place: point.to_array().map(|x| x as f32),
-            others: below(around.others.sqrt() * (1.0 - ROUNDING) - slack),
+            second: beyond(around.others.min(around.groups[1].0)),
+            others: beyond(around.others),
             at_least: below(at_least),
             groups: around.groups.map(|(_, group)| group),
         }

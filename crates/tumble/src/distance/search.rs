@@ -123,7 +123,8 @@ impl Looking for Wide {
             self.best.look_at(group, squared, tree);
             let distance = self.best.squared.sqrt();
             // from afar too much of the surface is about as close
-            let farther = if distance <= FAR * self.wider { distance + self.wider } else { distance };
+            let farther =
+                if distance <= FAR * self.wider { distance + self.wider } else { distance };
             self.limit = farther * farther * CLOSE;
         }
         self.around.add(least, group);

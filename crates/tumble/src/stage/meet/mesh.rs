@@ -4,9 +4,9 @@ use glam::{DMat3, DVec3};
 
 use super::list::{Pair, Point};
 use super::pose::Pose;
-use crate::BodyModel;
 use crate::distance::Patch;
 use crate::state::PairOrder;
+use crate::{BodyModel, SignedDistance};
 
 /// Of a point: nothing is known of the mesh near it.
 pub(super) const NO_PATCH: u32 = u32::MAX;
@@ -87,13 +87,7 @@ impl Known {
 
     /// How far (m) beyond their reach the particles of a pair must be listed anew; none where those of the list before will do, which holds
     /// all of up to `margin` (m).
-    pub fn list(
-        &mut self,
-        before: &Self,
-        key: PairOrder,
-        view: &View,
-        margin: f64,
-    ) -> Option<f64> {
+    pub fn list(&mut self, before: &Self, key: PairOrder, view: &View, margin: f64) -> Option<f64> {
         let start = self.quiet.len() as u32;
         let found = before.listings.binary_search_by_key(&key, |listing| listing.key);
         let Some(old) = found.ok().map(|found| before.listings[found]) else {
@@ -190,17 +184,12 @@ impl Look<'_> {
         let Some(solid) = &other.solid else { return Err(pair.margin) };
         let place = pose.place(body, point.particle);
         let inward = other_pose.rotation.transpose() * (place - other_pose.position);
-        // a glance is often enough
-        let gap = solid.at_least(inward) - pair.reach;
-        if gap > 0.0 && !self.exact {
+        if !self.exact
+            && let Some(gap) = self.gap(solid, point, inward)
+        {
             return Err(gap);
         }
         let patch = self.known.of(point);
-        // both may have come far, and yet not against each other
-        let gap = patch.at_least(inward) - pair.reach;
-        if gap > 0.0 && !self.exact {
-            return Err(gap);
-        }
         let nearest = solid.query_near(inward, patch, pair.reach + pair.margin);
         let Some(nearest) = nearest else { return Err(pair.margin) };
         let depth = pair.reach - nearest.distance;
@@ -209,5 +198,24 @@ impl Look<'_> {
         }
         let out = other_pose.rotation * nearest.gradient;
         Ok((place - out * pair.reach, out, depth))
+    }
+
+    /// A distance (m) by which a particle is surely too far away to touch.
+    #[inline(always)]
+    fn gap(&self, solid: &SignedDistance, point: &Point, place: DVec3) -> Option<f64> {
+        let reach = self.pair.reach;
+        // both may have come far, and yet not against each other
+        if let Some(patch) = self.known.patches.get(point.other as usize) {
+            let gap = patch.at_least(place) - reach;
+            if gap > 0.0 {
+                return Some(gap);
+            }
+            // what touched the moment before will again
+            if point.quiet == 0.0 {
+                return None;
+            }
+        }
+        let gap = solid.at_least(place) - reach;
+        (gap > 0.0).then_some(gap)
     }
 }
