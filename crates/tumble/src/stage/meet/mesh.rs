@@ -219,3 +219,6 @@ impl Look<'_> {
         (gap > 0.0).then_some(gap)
     }
 }
+
+#[cfg(test)]
+mod tests;
