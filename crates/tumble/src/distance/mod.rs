@@ -9,6 +9,8 @@ mod crossing;
 mod error;
 mod normals;
 mod outline;
+mod patch;
+mod search;
 mod tree;
 mod triangle;
 
@@ -20,6 +22,8 @@ use coarse::Coarse;
 pub use error::SurfaceError;
 use normals::Pseudonormals;
 use outline::Outline;
+pub(crate) use patch::Patch;
+use search::{Closest, NO_GROUP};
 use tree::{Extent, Tree};
 use triangle::{FACE, Foot};
 
@@ -77,6 +81,8 @@ pub struct SignedDistance {
     /// None where holes let the sign jump.
     coarse: Option<Coarse>,
     thickness: f64,
+    /// How much farther than the closest triangle a [`Patch`] reaches (m).
+    grain: f64,
     turned: bool,
     holes: usize,
     level: Level,
@@ -104,6 +110,7 @@ impl SignedDistance {
         let bounds = outline.bounds;
         let mut made = Self {
             thickness: crossing::thickness(&tree, bounds.high - bounds.low),
+            grain: tree.grain(),
             reach: bounds.low.abs().max(bounds.high.abs()).max_element(),
             tree,
             normals,
@@ -117,7 +124,7 @@ impl SignedDistance {
         if made.holes == 0 {
             // the cells come one beside the other
             let mut hint = 0;
-            made.coarse = Some(Coarse::over(&bounds, |point| {
+            made.coarse = Some(Coarse::over(&bounds, made.grain, |point| {
                 made.query(point, hint, f64::INFINITY).map_or(0.0, |nearest| {
                     hint = nearest.triangle;
                     nearest.distance
@@ -136,9 +143,21 @@ impl SignedDistance {
     pub fn query(&self, point: DVec3, hint: u32, within: f64) -> Option<Nearest> {
         let most = self.search_radius(point, within)?;
         let hint = self.slots.get(hint as usize).map(|&slot| slot as usize);
-        let slot = self.tree.nearest(self.level, point, most * most, hint)?;
-        let nearest = self.judge(point, slot);
+        self.answer(point, self.tree.nearest(self.level, point, most * most, hint), within)
+    }
+
+    /// What to say of the closest triangle.
+    #[inline]
+    fn answer(&self, point: DVec3, closest: Option<Closest>, within: f64) -> Option<Nearest> {
+        let nearest = self.judge(point, closest?.slot);
         (nearest.distance < 0.0 || nearest.distance <= within).then_some(nearest)
+    }
+
+    /// The signed distance of a point is at least this (m), by a glance.
+    #[inline]
+    pub(crate) fn at_least(&self, point: DVec3) -> f64 {
+        let from_box = self.bounds.distance(point);
+        self.coarse.as_ref().map_or(from_box, |coarse| from_box.max(coarse.at_least(point)))
     }
 
     /// How far from a point the surface matters (m); `None` where the point surely is farther outside than `within` (m).
@@ -148,10 +167,7 @@ impl SignedDistance {
         if !point.abs().cmple(DVec3::splat(FARTHEST)).all() {
             return None;
         }
-        let mut at_least = self.bounds.distance(point);
-        if let Some(coarse) = &self.coarse {
-            at_least = at_least.max(coarse.at_least(point));
-        }
+        let at_least = self.at_least(point);
         if at_least > within.max(0.0) {
             return None;
         }
@@ -194,7 +210,29 @@ impl SignedDistance {
     ///
     /// But for rounding, `false` means that some point is. A ball that is not finite, or larger than 1e140 m, is never sure to be.
     pub fn outside_ball(&self, centre: DVec3, radius: f64) -> bool {
-        centre.is_finite() && radius <= FARTHEST && self.query(centre, UNUSED, radius).is_none()
+        self.outside_ball_near(centre, radius, &mut { NO_GROUP })
+    }
+
+    /// As [`Self::outside_ball`], where `hint` is a group of triangles that may be in the ball, as those in the last ball nearby. Any number
+    /// will do.
+    pub(crate) fn outside_ball_near(&self, centre: DVec3, radius: f64, hint: &mut u32) -> bool {
+        if !(centre.is_finite() && radius <= FARTHEST) {
+            return false;
+        }
+        let Some(most) = self.search_radius(centre, radius) else { return true };
+        if radius >= 0.0 {
+            let part_of_it = |coarse: &Coarse| coarse.at_most(centre) <= radius;
+            if self.coarse.as_ref().is_some_and(part_of_it) {
+                return false;
+            }
+            // any triangle in it is enough
+            if let Some(group) = self.tree.any_within(self.level, centre, radius * radius, *hint) {
+                *hint = group;
+                return false;
+            }
+        }
+        // no triangle in it: it is wholly inside or outside
+        most <= radius || self.query(centre, UNUSED, radius).is_none()
     }
 
     /// Whether the segment between two points outside the solid crosses its surface. Where it only touches an edge or a

@@ -1,6 +1,7 @@
 //! The signed distance against plain loops and closed formulas.
 
 mod agreement;
+mod nearby;
 mod surfaces;
 
 use glam::{DQuat, DVec3};

@@ -1,28 +1,26 @@
 //! A tree of boxes over the triangles: each node has up to four children, and a leaf is a group of four triangles.
 
-use fearless_simd::{Level, Simd, dispatch, f64x4, prelude::*};
+use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::DVec3;
 
 use super::triangle::{Frame, Group, WIDTH};
 
 /// Children that can wait at once: three a level, and a tree of 2³² triangles has 16 levels.
-const WAITING: usize = 64;
+pub(super) const WAITING: usize = 64;
 /// Marks a child that is a group.
-const LEAF: u32 = 1 << 31;
+pub(super) const LEAF: u32 = 1 << 31;
 /// By how much of its longest side the box of a triangle is larger than the triangle: more than what
 /// rounding can take from the distance, so that no order of the search leaves out the closest.
 const SLACK: f64 = 1e-13;
-/// The same for what is far from the triangle, relative to the squared distance.
-const CLOSE: f64 = 1.0 + 1e-12;
 
 /// The boxes of up to four children (m); those that are missing are at infinity.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-struct Node {
+pub(super) struct Node {
     low: [[f64; WIDTH]; 3],
     high: [[f64; WIDTH]; 3],
     /// Nodes, or groups with [`LEAF`] added.
-    child: [u32; WIDTH],
+    pub child: [u32; WIDTH],
 }
 
 /// A box (m).
@@ -75,8 +73,8 @@ pub(super) struct Ray {
 /// The tree.
 #[derive(Clone, Debug)]
 pub(super) struct Tree {
-    nodes: Vec<Node>,
-    groups: Vec<Group>,
+    pub nodes: Vec<Node>,
+    pub groups: Vec<Group>,
     /// How many triangles there are.
     count: usize,
 }
@@ -142,6 +140,13 @@ impl Tree {
         self.count
     }
 
+    /// The edge of a square as large as a typical triangle (m).
+    pub fn grain(&self) -> f64 {
+        let mut area = 0.0;
+        self.each_slot(|slot, _| area += self.frame(slot).area());
+        (area / self.count as f64).sqrt()
+    }
+
     /// The triangle in a slot.
     #[inline(always)]
     pub fn frame(&self, slot: usize) -> Frame {
@@ -157,77 +162,6 @@ impl Tree {
     /// Bytes in use.
     pub fn memory(&self) -> usize {
         size_of::<Node>() * self.nodes.capacity() + size_of::<Group>() * self.groups.capacity()
-    }
-
-    /// The slot of the triangle closest to a point, of equally close ones that with the lowest index; none if all are
-    /// farther than the root of `most` (m²). The group of slot `hint` is looked at first.
-    pub fn nearest(
-        &self,
-        level: Level,
-        point: DVec3,
-        most: f64,
-        hint: Option<usize>,
-    ) -> Option<usize> {
-        dispatch!(level, simd => self.nearest_in(simd, point, most, hint))
-    }
-
-    #[inline(always)]
-    fn nearest_in<S: Simd>(
-        &self,
-        simd: S,
-        point: DVec3,
-        most: f64,
-        hint: Option<usize>,
-    ) -> Option<usize> {
-        simd.vectorize(
-            #[inline(always)]
-            || {
-                let mut best = Best::new(most);
-                let point = [
-                    f64x4::splat(simd, point.x),
-                    f64x4::splat(simd, point.y),
-                    f64x4::splat(simd, point.z),
-                ];
-                let hint = hint.map_or(usize::MAX, |slot| slot / WIDTH);
-                if hint < self.groups.len() {
-                    let group = hint;
-                    best.look_at(group, &self.groups[group].squared(simd, point), self);
-                }
-                let mut waiting = [(0.0, 0u32); WAITING];
-                let mut count = 1;
-                while count > 0 {
-                    count -= 1;
-                    let (squared, child) = waiting[count];
-                    if squared > best.limit {
-                        continue;
-                    }
-                    if child & LEAF != 0 {
-                        let group = (child & !LEAF) as usize;
-                        if hint != group {
-                            best.look_at(group, &self.groups[group].squared(simd, point), self);
-                        }
-                        continue;
-                    }
-                    let node = &self.nodes[child as usize];
-                    let squared = node.squared(simd, point);
-                    // the nearest goes on top
-                    let start = count;
-                    for (&squared, &child) in squared.iter().zip(&node.child) {
-                        if squared > best.limit {
-                            continue;
-                        }
-                        let mut at = count;
-                        while at > start && waiting[at - 1].0 < squared {
-                            waiting[at] = waiting[at - 1];
-                            at -= 1;
-                        }
-                        waiting[at] = (squared, child);
-                        count += 1;
-                    }
-                }
-                (best.slot != usize::MAX).then_some(best.slot)
-            },
-        )
     }
 
     /// Calls `hit(slot, frame)` for each triangle whose box a ray may meet; it returns how much of the ray is
@@ -311,7 +245,7 @@ impl Node {
 
     /// The squared distances (m²) of the boxes from a point.
     #[inline(always)]
-    fn squared<S: Simd>(&self, simd: S, point: [f64x4<S>; 3]) -> [f64; WIDTH] {
+    pub fn squared<S: Simd>(&self, simd: S, point: [f64x4<S>; 3]) -> [f64; WIDTH] {
         let x = self.beyond(simd, point, 0);
         let y = self.beyond(simd, point, 1);
         let z = self.beyond(simd, point, 2);
@@ -345,44 +279,5 @@ impl Node {
         // a box that is missing is at infinity, and rounding must not take one that is not
         let slack = 1e-12 * from.abs().max(to.abs());
         self.low[0][lane] <= self.high[0][lane] && from <= to + slack
-    }
-}
-
-/// The closest so far.
-struct Best {
-    slot: usize,
-    index: u32,
-    squared: f64,
-    /// What is farther need not be looked at.
-    limit: f64,
-}
-
-impl Best {
-    #[inline(always)]
-    fn new(most: f64) -> Self {
-        // boxes that are missing are at infinity, and farther than this
-        let most = most.min(0.5 * f64::MAX);
-        Self { slot: usize::MAX, index: u32::MAX, squared: most, limit: most * CLOSE }
-    }
-
-    #[inline(always)]
-    fn look_at(&mut self, group: usize, squared: &[f64; WIDTH], tree: &Tree) {
-        // most groups have nothing closer: one comparison for all
-        let [a, b, c, d] = *squared;
-        if a.min(b).min(c.min(d)) > self.squared {
-            return;
-        }
-        for (lane, &squared) in squared.iter().enumerate() {
-            if squared > self.squared {
-                continue;
-            }
-            let index = tree.groups[group].index[lane];
-            if squared < self.squared || index < self.index {
-                self.slot = group * WIDTH + lane;
-                self.index = index;
-                self.squared = squared;
-                self.limit = squared * CLOSE;
-            }
-        }
     }
 }

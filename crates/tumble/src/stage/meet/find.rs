@@ -5,11 +5,11 @@ use glam::DVec3;
 
 use super::contact::{Approach, Eight, PairForces};
 use super::list::{self, Near, Pair, Point};
-use super::mesh::touch_mesh;
+use super::mesh::{BLOCK, Known, Look, View};
 use super::pose::{self, Pose};
 use super::springs::OldSprings;
 use crate::lanes::{LANES, set, vector};
-use crate::{ContactKind, Model, PairSpring, Particles};
+use crate::{BodyModel, ContactKind, Model, PairSpring, Particles};
 
 /// The contacts of the bodies of one chunk, as first bodies.
 #[derive(Clone, Debug, Default)]
@@ -93,17 +93,24 @@ impl Found {
         self.too_fast = None;
         let springs = OldSprings::of_chunk(moment, body, std::mem::take(&mut self.released));
         let mut search = Search::new(self, moment, springs);
-        let Near { pairs, points, .. } = near;
-        for (number, pair) in pairs.iter().enumerate() {
+        let Near { pairs, points, known, .. } = near;
+        for number in 0..pairs.len() {
+            let pair = &pairs[number];
             let sides = Sides::of(moment, pair);
             if sides.travel < pair.quiet && sides.way <= pair.limit {
                 continue;
             }
-            search.begin(number, pair);
+            search.number = number;
+            if pair.is_at_mesh() {
+                let lists = Listed { pairs, points, known };
+                pairs[number].quiet = search.ask_mesh::<S, FIRST>(simd, &sides, lists);
+                continue;
+            }
+            search.begin(pair);
             for index in pair.start..pair.end {
-                let point = &mut points[index as usize];
-                if (sides.travel >= point.quiet || sides.passes(pair, point.quiet))
-                    && search.ask(&sides, pair, index, point) == LANES
+                let point = &points[index as usize];
+                if (sides.travel >= point.quiet || sides.passes(pair, sides.travel, point.quiet))
+                    && search.ask(&sides, pair, index, sides.geometry(pair, point), point) == LANES
                 {
                     search.settle::<S, FIRST>(simd, pairs, points);
                 }
@@ -119,6 +126,9 @@ impl Found {
     fn set_quiet(&self, near: &mut Near) {
         for touching in &self.touching {
             let pair = &mut near.pairs[touching.pair as usize];
+            if pair.is_at_mesh() {
+                continue;
+            }
             let points = &near.points[pair.start as usize..pair.end as usize];
             pair.quiet = points.iter().fold(f64::INFINITY, |quiet, point| quiet.min(point.quiet));
         }
@@ -179,6 +189,15 @@ struct Search<'a> {
     /// What the lists have to know of those that are being looked at, and how many there are.
     asked: Asked,
     count: usize,
+    /// The pair whose points are looked at.
+    number: usize,
+}
+
+/// What is listed, while points near meshes are looked at.
+struct Listed<'a> {
+    pairs: &'a [Pair],
+    points: &'a mut [Point],
+    known: &'a mut Known,
 }
 
 #[derive(Default)]
@@ -191,18 +210,82 @@ struct Asked {
 
 impl<'a> Search<'a> {
     fn new(found: &'a mut Found, moment: &'a Moment<'a>, springs: OldSprings<'a>) -> Self {
-        Self { moment, found, springs, asked: Asked::default(), count: 0 }
+        Self { moment, found, springs, asked: Asked::default(), count: 0, number: 0 }
     }
 
     /// Goes on to a pair.
-    fn begin(&mut self, number: usize, pair: &Pair) {
+    fn begin(&mut self, pair: &Pair) {
         let forces = PairForces::default();
-        self.found.touching.push(Touching { pair: number as u32, first: pair.first, forces });
+        let pair = Touching { pair: self.number as u32, first: pair.first, forces };
+        self.found.touching.push(pair);
     }
 
-    /// Takes a point of the latest pair into the next lane; returns how many are in use.
+    /// Takes the particles of a body that touch the mesh of another into lanes; returns until when the pair is quiet (m of travel).
     #[inline(always)]
-    fn ask(&mut self, sides: &Sides, pair: &Pair, index: u32, point: &mut Point) -> usize {
+    fn ask_mesh<S: Simd, const FIRST: bool>(
+        &mut self,
+        simd: S,
+        sides: &Sides,
+        lists: Listed,
+    ) -> f64 {
+        let Listed { pairs, points, known } = lists;
+        let pair = &pairs[self.number];
+        let exact = sides.way > pair.limit;
+        let (clock, until) = known.time(pair.listing, &sides.view(pair), sides.travel);
+        if clock < until && !exact {
+            return sides.travel + (until - clock);
+        }
+        self.begin(pair);
+        let mut look = Look { pair, known, exact };
+        let mut quiet = f64::INFINITY;
+        for (number, start) in (pair.start..pair.end).step_by(BLOCK).enumerate() {
+            let mut of_block = *look.known.of_block(pair.listing, number);
+            if clock >= of_block || exact {
+                of_block = f64::INFINITY;
+                for index in start..pair.end.min(start + BLOCK as u32) {
+                    let point = &mut points[index as usize];
+                    let mut is_full = false;
+                    if clock >= point.quiet || sides.passes(pair, clock, point.quiet) {
+                        match sides.touch_mesh(&mut look, point) {
+                            Ok(touch) => {
+                                point.quiet = 0.0;
+                                is_full = self.ask(sides, pair, index, touch, point) == LANES;
+                            }
+                            Err(gap) => point.quiet = clock + gap,
+                        }
+                        self.watch(sides, pair, clock, point);
+                    }
+                    of_block = of_block.min(point.quiet);
+                    if is_full {
+                        self.settle::<S, FIRST>(simd, pairs, points);
+                    }
+                }
+                *look.known.of_block(pair.listing, number) = of_block;
+            }
+            quiet = quiet.min(of_block);
+        }
+        *look.known.of_pair(pair.listing) = quiet;
+        sides.travel + (quiet - clock)
+    }
+
+    /// Takes note of a particle that could pass through a mesh within a step.
+    #[inline(always)]
+    fn watch(&mut self, sides: &Sides, pair: &Pair, clock: f64, point: &Point) {
+        if sides.passes(pair, clock, point.quiet) && self.found.too_fast.is_none() {
+            self.found.too_fast = Some(pair_too_fast(sides.model, pair, point, sides.way));
+        }
+    }
+
+    /// Takes a point of the latest pair, with its geometry, into the next lane; returns how many are in use.
+    #[inline(always)]
+    fn ask(
+        &mut self,
+        sides: &Sides,
+        pair: &Pair,
+        index: u32,
+        geometry: Geometry,
+        point: &Point,
+    ) -> usize {
         let lane = self.count;
         let Found { eights, in_use, touching, approach, .. } = &mut *self.found;
         if eights.len() == *in_use {
@@ -210,14 +293,15 @@ impl<'a> Search<'a> {
         }
         let eight = &mut eights[*in_use];
         self.asked.travel[lane] = sides.travel;
-        self.asked.way[lane] = sides.way;
+        // meshes are watched by a clock of their own
+        self.asked.way[lane] = if pair.is_at_mesh() { 0.0 } else { sides.way };
         eight.touching[lane] = touching.len() as u32 - 1;
         // in a heap at rest it is the same points every time
         if eight.point[lane] != index {
             eight.point[lane] = index;
             sides.take_law(pair, point, lane, eight);
         }
-        sides.approach(pair, point, lane, approach);
+        sides.approach(geometry, lane, approach);
         self.count = lane + 1;
         self.count
     }
@@ -290,6 +374,9 @@ fn pair_too_fast(model: &Model, pair: &Pair, point: &Point, way: f64) -> TooFast
     TooFast { body, particle, other, way, limit: pair.limit }
 }
 
+/// Where a particle is (m); from the other sphere to its own (m), or n; and how far apart spheres touch, or the depth (m).
+type Geometry = (DVec3, DVec3, f64);
+
 /// Two bodies where they are.
 struct Sides<'a> {
     model: &'a Model,
@@ -329,33 +416,49 @@ impl<'a> Sides<'a> {
     /// Whether one body could pass through the other at a point within a step. What the lists remember of that, until when it is
     /// `quiet`, is no reason to refuse a step: it is looked at anew.
     #[inline(always)]
-    fn passes(&self, pair: &Pair, quiet: f64) -> bool {
-        self.way > pair.limit && self.travel + self.way > quiet
+    fn passes(&self, pair: &Pair, clock: f64, quiet: f64) -> bool {
+        self.way > pair.limit && clock + self.way > quiet
+    }
+
+    /// How a sphere lies to another, or to a wall.
+    #[inline(always)]
+    fn geometry(&self, pair: &Pair, point: &Point) -> Geometry {
+        let (model, p, q) = (self.model, self.first, self.second);
+        let place = p.place(&model.bodies[pair.first as usize], point.particle);
+        if pair.kind == ContactKind::Wall {
+            let wall = &model.walls[pair.second as usize];
+            return (place, wall.normal, pair.reach + wall.depth(place));
+        }
+        let apart = place - q.place(&model.bodies[pair.second as usize], point.other);
+        (place, self.apart(apart), pair.reach)
+    }
+
+    /// The particle of a pair, and the mesh: of which body, and where that is.
+    fn at_mesh(&self, pair: &Pair) -> [(&BodyModel, &Pose); 2] {
+        let body = |index: u32| &self.model.bodies[index as usize];
+        let (a, b) = ((body(pair.first), self.first), (body(pair.second), self.second));
+        if pair.kind == ContactKind::FirstInSecond { [a, b] } else { [b, a] }
+    }
+
+    /// How the particles of the one body lie in the frame of the mesh of the other.
+    fn view(&self, pair: &Pair) -> View {
+        let [(body, pose), (_, other)] = self.at_mesh(pair);
+        View::of(body, pose, other)
+    }
+
+    /// How a particle lies in a mesh that it touches, or how far it is from there (m).
+    #[inline(always)]
+    fn touch_mesh(&self, look: &mut Look, point: &mut Point) -> Result<Geometry, f64> {
+        let [particle, mesh] = self.at_mesh(look.pair);
+        let (place, out, depth) = look.touch_mesh(point, particle, mesh)?;
+        let is_first = look.pair.kind == ContactKind::FirstInSecond;
+        Ok((place, if is_first { out } else { -out }, depth))
     }
 
     /// Puts what a contact is found from into a lane.
     #[inline(always)]
-    fn approach(&self, pair: &Pair, point: &mut Point, lane: usize, into: &mut Approach) {
-        let (model, p, q) = (self.model, self.first, self.second);
-        let a = &model.bodies[pair.first as usize];
-        let b = || &model.bodies[pair.second as usize];
-        let (place, apart, reach) = match pair.kind {
-            ContactKind::Wall => {
-                let wall = &model.walls[pair.second as usize];
-                let place = p.place(a, point.particle);
-                (place, wall.normal, pair.reach + wall.depth(place))
-            }
-            ContactKind::Spheres => {
-                let place = p.place(a, point.particle);
-                let apart = place - q.place(b(), point.other);
-                (place, self.apart(apart), pair.reach)
-            }
-            ContactKind::FirstInSecond => touch_mesh(pair, point, (a, p), (b(), q)),
-            ContactKind::SecondInFirst => {
-                let (place, out, depth) = touch_mesh(pair, point, (b(), q), (a, p));
-                (place, -out, depth)
-            }
-        };
+    fn approach(&self, (place, apart, reach): Geometry, lane: usize, into: &mut Approach) {
+        let (p, q) = (self.first, self.second);
         set(&mut into.place, lane, place);
         set(&mut into.apart, lane, apart);
         into.reach[lane] = reach;

@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::grid::{Ball, Grid};
+use super::mesh::{Known, NO_PATCH, View};
 use super::pose::Pose;
 use crate::parallel::{self, CHUNK};
 use crate::state::{PairOrder, pair_order};
@@ -26,6 +27,8 @@ pub(super) struct Pair {
     /// Its points, as a range of those of the chunk.
     pub start: u32,
     pub end: u32,
+    /// What is known of the particles and the mesh, by number.
+    pub listing: u32,
     /// No contact until both bodies have travelled so far together (m).
     pub quiet: f64,
     /// How far apart two particles touch, or a particle and a mesh or wall (m).
@@ -38,6 +41,11 @@ pub(super) struct Pair {
 }
 
 impl Pair {
+    /// Whether it is of particles and a mesh.
+    pub fn is_at_mesh(&self) -> bool {
+        matches!(self.kind, ContactKind::FirstInSecond | ContactKind::SecondInFirst)
+    }
+
     /// The second body; of a wall a number that no body has.
     #[inline(always)]
     pub fn second_body(&self) -> u32 {
@@ -50,9 +58,9 @@ impl Pair {
 pub(super) struct Point {
     /// Which particle, by slot.
     pub particle: u32,
-    /// Which particle of the other body, by slot; of a mesh, the triangle that was nearest last.
+    /// Which particle of the other body, by slot; of a mesh, which patch of it is known.
     pub other: u32,
-    /// No contact until both bodies have travelled so far together (m).
+    /// No contact until both bodies have travelled so far together (m); of a mesh, until then on the clock of the pair.
     pub quiet: f64,
 }
 
@@ -63,9 +71,11 @@ pub(super) struct Near {
     pub points: Vec<Point>,
     /// How often they have been listed.
     pub made: u64,
+    pub known: Known,
     /// Those of the list before.
     old_pairs: Vec<Pair>,
     old_points: Vec<Point>,
+    old_known: Known,
     /// Room for slots of particles.
     slots: [Vec<u32>; 2],
 }
@@ -118,9 +128,11 @@ impl Lists {
         parallel::each(&mut self.chunks, |index, near| {
             std::mem::swap(&mut near.pairs, &mut near.old_pairs);
             std::mem::swap(&mut near.points, &mut near.old_points);
+            std::mem::swap(&mut near.known, &mut near.old_known);
             near.pairs.clear();
             near.points.clear();
             near.made += 1;
+            near.known.clear();
             let first = (index * CHUNK) as u32;
             let until = (first + CHUNK as u32).min(bodies.len() as u32);
             let mut pairs = &pairs[pairs.partition_point(|pair| pair[0] < first)..];
@@ -191,6 +203,7 @@ impl Near {
                 kind: ContactKind::Wall,
                 start,
                 end: 0,
+                listing: 0,
                 quiet: 0.0,
                 reach: radius,
                 margin: pose.skin,
@@ -208,11 +221,12 @@ impl Near {
         let (a, b) = (at(first), at(second));
         for &kind in kinds(a.body, b.body) {
             let (start, key) = (self.points.len() as u32, pair_order(first, second, kind));
+            let mut listing = 0;
             match kind {
                 ContactKind::Wall => {}
                 ContactKind::Spheres => self.list_spheres(a, b),
-                ContactKind::FirstInSecond => self.list_particles(a, b, key),
-                ContactKind::SecondInFirst => self.list_particles(b, a, key),
+                ContactKind::FirstInSecond => listing = self.list_particles(a, b, key),
+                ContactKind::SecondInFirst => listing = self.list_particles(b, a, key),
             }
             let (law, reach) = (law(a.body, b.body, kind), reach(a.body, b.body, kind));
             // a mesh is asked farther out, so that it need not be asked again so soon
@@ -224,6 +238,7 @@ impl Near {
                 kind,
                 start,
                 end: 0,
+                listing,
                 quiet: 0.0,
                 reach,
                 margin,
@@ -262,27 +277,39 @@ impl Near {
     }
 
     /// Particles of `a` that are near the mesh of `b`: by leaves of the tree, since what is known of each particle from the
-    /// list before is worth more than a look at it now.
-    fn list_particles(&mut self, a: Side, b: Side, key: PairOrder) {
-        let Some(solid) = &b.body.solid else { return };
+    /// list before is worth more than a look at it now. Returns the number of the listing.
+    fn list_particles(&mut self, a: Side, b: Side, key: PairOrder) -> u32 {
+        let Some(solid) = &b.body.solid else { return 0 };
         let (margin, reach) = (a.pose.skin + b.pose.skin, radius(a.body));
-        // places of the frame of `a` in the frame of `b`
-        let turn = b.pose.rotation.transpose() * a.pose.rotation;
-        let way = b.pose.rotation.transpose() * (a.pose.position - b.pose.position);
+        let old = points_of(&self.old_pairs, &self.old_points, key);
+        let view = View::of(a.body, a.pose, b.pose);
+        let Some(margin) = self.known.list(&self.old_known, key, &view, margin) else {
+            for point in old {
+                self.points.push(self.known.carry(&self.old_known, point));
+            }
+            return self.known.finish(0);
+        };
         let [mut slots, other] = std::mem::take(&mut self.slots);
         slots.clear();
-        let may_touch =
-            |centre, radius| !solid.outside_ball(way + turn * centre, radius + reach + margin);
+        let mut hint = 0;
+        let may_touch = |centre, radius| {
+            let centre = view.way + view.turn * centre;
+            !solid.outside_ball_near(centre, radius + reach + margin, &mut hint)
+        };
         a.body.shape.particles().list_where(may_touch, &mut slots);
-        let old = points_of(&self.old_pairs, &self.old_points, key);
-        let mut old = old.iter().copied().peekable();
+        let mut old = old.iter().peekable();
         for &particle in &slots {
             while old.next_if(|point| point.particle < particle).is_some() {}
-            let known = old.next_if(|point| point.particle == particle);
-            // who is not known is looked at soon
-            self.points.push(known.unwrap_or(Point { particle, other: 0, quiet: 0.0 }));
+            let point = match old.next_if(|point| point.particle == particle) {
+                Some(point) => self.known.carry(&self.old_known, point),
+                // who is not known is looked at soon
+                None => Point { particle, other: NO_PATCH, quiet: 0.0 },
+            };
+            self.points.push(point);
         }
+        let count = slots.len();
         self.slots = [slots, other];
+        self.known.finish(count)
     }
 }
 
