@@ -25,7 +25,7 @@ pub(super) struct Found {
     pub number: Vec<u32>,
     /// Energy (J) of springs that have come loose, by body of the chunk.
     pub released: Vec<f64>,
-    /// The springs that go on.
+    /// The springs that go on after the latest push.
     pub springs: Vec<PairSpring>,
     /// The first two bodies that could pass through each other in a step.
     pub too_fast: Option<TooFast>,
@@ -87,6 +87,7 @@ impl Found {
             self.eights.clear();
         }
         self.in_use = 0;
+        self.springs.clear();
         self.touching.clear();
         self.number.clear();
         self.number.resize(near.pairs.len(), NONE);
@@ -134,14 +135,16 @@ impl Found {
         }
     }
 
-    /// The forces of all contacts with the velocities of `poses`.
+    /// The forces of all contacts with the velocities of `poses`, and the springs that go on.
     #[inline(always)]
-    pub fn push<S: Simd>(&mut self, simd: S, poses: &[Pose]) {
+    pub fn push<S: Simd>(&mut self, simd: S, near: &Near, poses: &[Pose]) {
         for touching in &mut self.touching {
             touching.forces = PairForces::default();
         }
-        for eight in &mut self.eights[..self.in_use] {
-            eight.push::<S, false>(simd, poses, &mut self.touching);
+        self.springs.clear();
+        for number in 0..self.in_use {
+            self.eights[number].push::<S, false>(simd, poses, &mut self.touching);
+            self.keep(number, &near.pairs);
         }
     }
 
@@ -167,16 +170,15 @@ impl Found {
         }
     }
 
-    /// The springs that go on after the latest push.
-    pub fn keep(&mut self, near: &Near) {
-        self.springs.clear();
-        for eight in &self.eights[..self.in_use] {
-            for lane in eight.in_contact().filter(|&lane| eight.friction[lane] > 0.0) {
-                let pair = self.touching[eight.touching[lane] as usize].pair;
-                let mut spring = eight.spring(lane, &near.pairs[pair as usize]);
-                spring.stretch = eight.kept(lane);
-                self.springs.push(spring);
-            }
+    /// Writes down the springs of eight contacts after the latest push.
+    #[inline(always)]
+    fn keep(&mut self, number: usize, pairs: &[Pair]) {
+        let eight = &self.eights[number];
+        for lane in eight.in_contact().filter(|&lane| eight.friction[lane] > 0.0) {
+            let pair = self.touching[eight.touching[lane] as usize].pair;
+            let mut spring = eight.spring(lane, &pairs[pair as usize]);
+            spring.stretch = eight.kept(lane);
+            self.springs.push(spring);
         }
     }
 }
@@ -334,6 +336,9 @@ impl<'a> Search<'a> {
             eight.carry(simd, approach, poses, since);
         }
         eight.push::<S, FIRST>(simd, poses, touching);
+        if !FIRST {
+            self.found.keep(self.found.in_use - 1, pairs);
+        }
     }
 
     /// Tells the lists what was found in a lane, and finds the spring that was there.

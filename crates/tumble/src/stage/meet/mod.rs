@@ -66,7 +66,7 @@ pub fn meet(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
 }
 
 /// Writes down the tangential springs that go on after the latest push.
-pub fn keep(state: &mut State, scratch: &mut Scratch) {
+pub fn keep(state: &mut State, scratch: &Scratch) {
     scratch.meeting.keep(&mut state.pair_springs);
 }
 
@@ -113,9 +113,10 @@ impl Meeting {
 
     /// The forces of what touches, with the velocities of the poses as they are.
     fn push(&mut self) {
-        let poses = &self.poses;
-        parallel::each(&mut self.found, |_, found| {
-            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.push(simd, poses)));
+        let (poses, chunks) = (&self.poses, &self.lists.chunks);
+        parallel::each(&mut self.found, |index, found| {
+            let near = &chunks[index];
+            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.push(simd, near, poses)));
         });
     }
 
@@ -140,9 +141,7 @@ impl Meeting {
     }
 
     /// The springs that go on after the latest push.
-    pub fn keep(&mut self, springs: &mut Vec<PairSpring>) {
-        let chunks = &self.lists.chunks;
-        parallel::each(&mut self.found, |index, found| found.keep(&chunks[index]));
+    fn keep(&self, springs: &mut Vec<PairSpring>) {
         springs.clear();
         for found in &self.found {
             springs.extend_from_slice(&found.springs);
