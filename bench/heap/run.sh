@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Heaps of clumps in LAMMPS and tumble, as Markdown tables on standard output.
 # TUMBLE=path takes a tumble that is built already, or TUMBLE=no leaves it out; CLUMPS="125 1000" says how many
-# (cube numbers), SECONDS_SIMULATED=3 how long. Progress goes to standard error.
+# (cube numbers), SECONDS_SIMULATED=3 how long, SEEDS="1 2 3 4 5" from which starts. Progress goes to standard error.
 set -euo pipefail
 cd "$(dirname "$0")"
 venv=$PWD/../.venv
@@ -59,13 +59,16 @@ fi
 
 : >"$scratch/results"
 for clumps in ${CLUMPS:-125 1000}; do
-    folder=$scratch/$clumps
-    "$python" clumps.py "$folder" "$clumps"
-    if [ $has_lammps = yes ]; then
-        try "LAMMPS, $clumps clumps" "${pin[@]}" "$python" with_lammps.py "$folder" "$simulated"
-    fi
-    if [ "$tumble" = no ]; then continue; fi
-    try "tumble, $clumps clumps" "${pin[@]}" "$python" with_tumble.py "$folder" "$simulated" "$tumble"
+    for seed in ${SEEDS:-1 2 3 4 5}; do
+        folder=$scratch/$clumps-$seed
+        "$python" clumps.py "$folder" "$clumps" "$seed"
+        if [ $has_lammps = yes ]; then
+            try "LAMMPS, $clumps clumps, start $seed" "${pin[@]}" "$python" with_lammps.py "$folder" "$simulated"
+        fi
+        if [ "$tumble" = no ]; then continue; fi
+        try "tumble, $clumps clumps, start $seed" "${pin[@]}" "$python" with_tumble.py "$folder" "$simulated" "$tumble"
+        rm -r "$folder"
+    done
 done
 
 echo "Machine: $(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1); $(uname -sm);" \

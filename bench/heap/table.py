@@ -1,51 +1,60 @@
-"""Makes Markdown tables of the results (JSON, one a line) on standard input."""
+"""Makes Markdown tables of the results (JSON, one a line) on standard input: means over the starts that were run."""
 import json
+import statistics
 import sys
 
-COLUMNS = {
-    "clumps": lambda r: f"{r['clumps']:,}",
-    "simulated (s)": lambda r: f"{r['simulated (s)']:g}",
+# each column: what of a result, how the starts are summed up, how that is shown
+SPEED = {
+    "10⁶ body-steps/s, whole": ("body-steps a wall second", "median", "{:.3f}", 1e-6),
+    "last 0.5 s": ("body-steps a wall second, last", "median", "{:.3f}", 1e-6),
+    "of processor time, whole": ("body-steps a processor second", "median", "{:.3f}", 1e-6),
+    "of processor time, last 0.5 s": ("body-steps a processor second, last", "median", "{:.3f}", 1e-6),
 }
-SPEED = COLUMNS | {
-    "10⁶ body-steps/s, whole": lambda r: f"{r['body-steps a wall second'] / 1e6:.3f}",
-    "last 0.5 s": lambda r: f"{r['body-steps a wall second, last'] / 1e6:.3f}",
-    "of processor time, whole": lambda r: millions(r.get("body-steps a processor second")),
-    "of processor time, last 0.5 s": lambda r: millions(r.get("body-steps a processor second, last")),
-    "wall s per simulated s": lambda r: f"{r['wall seconds'] / r['simulated (s)']:.3g}",
-}
-HEAP = COLUMNS | {
-    "mean height (m)": lambda r: f"{r['mean height (m)']:.4f}",
-    "pairs of spheres in contact": lambda r: f"{r['pairs in contact']:,}",
-    "contacts a clump": lambda r: f"{r['contacts a clump']:.2f}",
-    "wall contacts": lambda r: f"{r['wall contacts']:,}",
-    "deepest at the end (mm)": lambda r: millimetres(max(r["deepest overlap (m)"], r["deepest at a wall (m)"])),
-    "deepest of all looks (mm)": lambda r: millimetres(r["deepest of all looks (m)"]),
-    "at rest after (s)": lambda r: "–" if r["time to rest (s)"] is None else f"{r['time to rest (s)']:.2f}",
-    "kinetic a clump at the end (J)": lambda r: f"{r['kinetic a clump at the end (J)']:.0e}",
-    "spheres outside": lambda r: f"{r['spheres outside']}",
+HEAP = {
+    "mean height (m)": ("mean height (m)", "mean", "{:.4f}", 1.0),
+    "contacts a clump": ("contacts a clump", "mean", "{:.2f}", 1.0),
+    "wall contacts": ("wall contacts", "mean", "{:.0f}", 1.0),
+    "at rest after (s)": ("time to rest (s)", "mean", "{:.2f}", 1.0),
+    "deepest at the end (mm)": ("deepest", "max", "{:.2f}", 1e3),
+    "deepest of all looks (mm)": ("deepest of all looks (m)", "max", "{:.2f}", 1e3),
+    "kinetic a clump at the end (J)": ("kinetic a clump at the end (J)", "max", "{:.0e}", 1.0),
+    "spheres outside": ("spheres outside", "sum", "{:.0f}", 1.0),
 }
 
 
-def millions(value):
-    return f"{value / 1e6:.3f}" if value else "–"
+def cell(results, column):
+    """One number of all starts; a mean with its standard error where there are several."""
+    key, kind, form, unit = column
+    values = [result.get(key) for result in results]
+    if any(value is None for value in values):
+        missing = sum(value is None for value in values)
+        return "–" if kind == "median" or missing == len(values) else f"– for {missing} of {len(values)}"
+    sums = {"median": statistics.median, "mean": statistics.fmean, "max": max, "sum": sum}
+    text = form.format(unit * sums[kind](values))
+    if kind == "mean" and len(values) > 1:
+        text += " ± " + form.format(unit * statistics.stdev(values) / len(values) ** 0.5)
+    return text
 
 
-def millimetres(value):
-    return f"{1e3 * value:.2f}"
-
-
-def table(results, columns):
-    """A Markdown table, one row a result."""
-    rows = [["engine", "settings", *columns], ["---"] * (2 + len(columns))]
-    for result in results:
-        settings = ", ".join(f"{key} {value}" for key, value in result["settings"].items())
-        rows.append([result["engine"], settings, *(cell(result) for cell in columns.values())])
+def table(groups, columns):
+    """A Markdown table, one row for each engine and number of clumps."""
+    rows = [["engine", "settings", "clumps", "simulated (s)", "starts", *columns]]
+    rows.append(["---"] * len(rows[0]))
+    for (engine, settings, clumps, seconds), results in groups.items():
+        row = [engine, settings, f"{clumps:,}", f"{seconds:g}", str(len(results))]
+        rows.append(row + [cell(results, column) for column in columns.values()])
     for row in rows:
         print("|", " | ".join(row), "|")
     print()
 
 
-results = [json.loads(line) for line in sys.stdin]
-if results:
-    table(results, SPEED)
-    table(results, HEAP)
+groups = {}
+for line in sys.stdin:
+    result = json.loads(line)
+    result["deepest"] = max(result["deepest overlap (m)"], result["deepest at a wall (m)"])
+    settings = ", ".join(f"{key} {value}" for key, value in result["settings"].items())
+    key = (result["engine"], settings, result["clumps"], result["simulated (s)"])
+    groups.setdefault(key, []).append(result)
+if groups:
+    table(groups, SPEED)
+    table(groups, HEAP)
