@@ -3,8 +3,9 @@
 use super::contact::PairForces;
 use super::find::{Found, NONE, Touching};
 use super::list::Lists;
+use super::pose::Pose;
 use crate::parallel::CHUNK;
-use crate::{Batch, Wrench};
+use crate::{Batch, BodyForces, Model, Wrench};
 
 /// Sums over the contacts of one body.
 #[derive(Clone, Copy, Debug, Default)]
@@ -55,11 +56,18 @@ pub(crate) struct Feelings<'a> {
     pub(super) lists: &'a Lists,
 }
 
-/// Sets the velocities that contacts feel to those in the middle of the kick that a first look gives over the time `h` (s).
-pub(super) fn foretell(batch: &mut Batch, h: f64) {
-    let Batch { model, first, poses, forces, feelings, .. } = batch;
-    let mut sums = Sums::of_chunk(*feelings, *first);
-    for ((index, pose), others) in (*first..).zip(poses.iter_mut()).zip(&**forces) {
+/// Sets the velocities that contacts feel to those in the middle of the kick that a first look gives over the time `h` (s), for the bodies
+/// from number `first` on that have these poses. `others` are forces from elsewhere.
+pub(super) fn foretell(
+    model: &Model,
+    first: usize,
+    poses: &mut [Pose],
+    others: &[BodyForces],
+    feelings: Feelings,
+    h: f64,
+) {
+    let mut sums = Sums::of_chunk(feelings, first);
+    for ((index, pose), others) in (first..).zip(poses).zip(others) {
         let sum = sums.next::<true>(index);
         let body = &model.bodies[index];
         if body.is_free() && sum.all != Wrench::default() {

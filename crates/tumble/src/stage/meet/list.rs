@@ -71,6 +71,8 @@ pub(super) struct Near {
     pub points: Vec<Point>,
     /// How often they have been listed.
     pub made: u64,
+    /// The last chunk that the second body of a pair is in, or its own.
+    pub until: usize,
     pub known: Known,
     /// Those of the list before.
     old_pairs: Vec<Pair>,
@@ -144,6 +146,9 @@ impl Lists {
                 }
                 pairs = &pairs[count..];
             }
+            let bodies = near.pairs.iter().filter(|pair| pair.kind != ContactKind::Wall);
+            let seconds = bodies.map(|pair| pair.second as usize / CHUNK);
+            near.until = seconds.max().unwrap_or(index).max(index);
         });
         self.turn_round(bodies.len());
     }

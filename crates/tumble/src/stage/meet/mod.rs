@@ -22,12 +22,14 @@ pub(crate) use self::find::TooFast;
 use self::find::{Found, Moment};
 pub(crate) use self::gather::Feelings;
 pub use self::gather::feel;
-use self::list::Lists;
 pub(crate) use self::list::can_touch;
+use self::list::{Lists, Near};
 pub(crate) use self::pose::Pose;
 pub(crate) use self::start::{overlaps, push_apart};
 use crate::parallel::{self, CHUNK};
-use crate::{Batch, BodyModel, Integrator, Model, PairSpring, Scratch, State, each_batch};
+use crate::{
+    Batch, BodyForces, BodyModel, Integrator, Model, PairSpring, Scratch, State, each_batch,
+};
 
 /// Room for contacts between bodies. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -57,8 +59,15 @@ pub fn meet(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     let is_damped =
         |body: &BodyModel| body.pair_material.is_damped() || (body.has_spheres() && body.is_damped);
     if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
+        if parallel::is_alone() {
+            scratch.meeting.in_turn(model, &state.pair_springs, &scratch.forces, h);
+            return;
+        }
         scratch.meeting.find::<true>(model, &state.pair_springs, h);
-        each_batch(model, state, scratch, |batch| gather::foretell(batch, h));
+        each_batch(model, state, scratch, |batch| {
+            let Batch { model, first, poses, forces, feelings, .. } = batch;
+            gather::foretell(model, *first, poses, forces, *feelings, h);
+        });
         scratch.meeting.push();
     } else {
         scratch.meeting.find::<false>(model, &state.pair_springs, h);
@@ -105,19 +114,44 @@ impl Meeting {
     fn find<const FIRST: bool>(&mut self, model: &Model, springs: &[PairSpring], since: f64) {
         let moment = Moment { model, poses: &self.poses, springs, since };
         self.found.resize_with(self.lists.chunks.len(), Found::default);
-        parallel::each_of_two(&mut self.found, &mut self.lists.chunks, |index, found, near| {
-            let body = index * CHUNK;
-            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.find::<_, FIRST>(simd, near, &moment, body)));
+        parallel::each_of_two(&mut self.found, &mut self.lists.chunks, |chunk, found, near| {
+            find_chunk::<FIRST>(&moment, chunk, found, near);
         });
     }
 
     /// The forces of what touches, with the velocities of the poses as they are.
     fn push(&mut self) {
         let (poses, chunks) = (&self.poses, &self.lists.chunks);
-        parallel::each(&mut self.found, |index, found| {
-            let near = &chunks[index];
-            dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.push(simd, near, poses)));
-        });
+        parallel::each(&mut self.found, |chunk, found| push_chunk(poses, found, &chunks[chunk]));
+    }
+
+    /// Finds what touches, foretells velocities and pushes with them, each chunk as soon as it can be: what belongs to its contacts is still
+    /// at hand then. No pair has its second body in an earlier chunk, so that what was foretold of a chunk changes nothing that
+    /// is found later.
+    fn in_turn(
+        &mut self,
+        model: &Model,
+        springs: &[PairSpring],
+        others: &[BodyForces],
+        since: f64,
+    ) {
+        self.found.resize_with(self.lists.chunks.len(), Found::default);
+        let mut pushed = 0;
+        for (chunk, others) in others.chunks(CHUNK).enumerate() {
+            let moment = Moment { model, poses: &self.poses, springs, since };
+            let near = &mut self.lists.chunks[chunk];
+            find_chunk::<true>(&moment, chunk, &mut self.found[chunk], near);
+            let feelings = Feelings { found: &self.found, lists: &self.lists };
+            let first = chunk * CHUNK;
+            let poses = &mut self.poses[first..first + others.len()];
+            gather::foretell(model, first, poses, others, feelings, since);
+            while let Some(near) = self.lists.chunks.get(pushed)
+                && near.until <= chunk
+            {
+                push_chunk(&self.poses, &mut self.found[pushed], near);
+                pushed += 1;
+            }
+        }
     }
 
     /// Energy in the springs between bodies and between spheres and walls, normal and tangential (J).
@@ -147,4 +181,18 @@ impl Meeting {
             springs.extend_from_slice(&found.springs);
         }
     }
+}
+
+fn find_chunk<const FIRST: bool>(
+    moment: &Moment,
+    chunk: usize,
+    found: &mut Found,
+    near: &mut Near,
+) {
+    let body = chunk * CHUNK;
+    dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.find::<_, FIRST>(simd, near, moment, body)));
+}
+
+fn push_chunk(poses: &[Pose], found: &mut Found, near: &Near) {
+    dispatch!(Level::new(), simd => simd.vectorize(#[inline(always)] || found.push(simd, near, poses)));
 }
