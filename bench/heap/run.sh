@@ -12,12 +12,16 @@ simulated=${SECONDS_SIMULATED:-3}
 skipped=()
 export RAYON_NUM_THREADS=1 OMP_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE=1
 
+last_words() { # the last line of the log, if it says anything
+    grep -v '^ *$' "$log" | tail -n 1 || echo "nothing said"
+}
+
 install() { # install NAME PACKAGE…: into the virtual environment
     local name=$1
     shift
     echo "install $name" >&2
     "$venv/bin/pip" install --quiet --disable-pip-version-check "$@" >"$log" 2>&1 && return
-    skipped+=("$name: not installed: $(grep -v '^ *$' "$log" | tail -n 1)")
+    skipped+=("$name: not installed: $(last_words)")
     return 1
 }
 
@@ -26,8 +30,8 @@ try() {
     local name=$1
     shift
     echo "$name" >&2
-    if ! "$@" >"$scratch/result" 2> >(tee "$log" >&2); then
-        skipped+=("$name: $(grep -v '^ *$' "$log" | tail -n 1)")
+    if ! "$@" 2>&1 >"$scratch/result" | tee "$log" >&2; then
+        skipped+=("$name: $(last_words)")
         return
     fi
     cat "$scratch/result" >>"$scratch/results"
@@ -65,8 +69,9 @@ for clumps in ${CLUMPS:-125 1000}; do
         if [ $has_lammps = yes ]; then
             try "LAMMPS, $clumps clumps, start $seed" "${pin[@]}" "$python" with_lammps.py "$folder" "$simulated"
         fi
-        if [ "$tumble" = no ]; then continue; fi
-        try "tumble, $clumps clumps, start $seed" "${pin[@]}" "$python" with_tumble.py "$folder" "$simulated" "$tumble"
+        if [ "$tumble" != no ]; then
+            try "tumble, $clumps clumps, start $seed" "${pin[@]}" "$python" with_tumble.py "$folder" "$simulated" "$tumble"
+        fi
         rm -r "$folder"
     done
 done

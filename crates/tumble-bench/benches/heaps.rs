@@ -14,16 +14,20 @@ fn main() -> Result<(), Box<dyn Error>> {
         "| clumps | springs a clump | one thread (ns a clump and step) | two threads | one ÷ two | memory a clump (kB) |"
     );
     println!("|---|---|---|---|---|---|");
-    for cost in heaps([1, 8, 100])? {
+    for cost in heaps(&[1, 8, 100])? {
         println!(
-            "| {} | {:.2} | {:.0} | {:.0} | {:.2} | {:.1} |",
+            "| {} | {:.2} | {:.0} | {:.0} | {:.2} | {} |",
             cost.clumps,
             cost.springs,
             cost.alone,
             cost.together,
             cost.gain,
-            1e-3 * cost.memory,
+            memory(cost.memory),
         );
     }
     Ok(())
+}
+
+fn memory(bytes: f64) -> String {
+    if bytes.is_nan() { "–".to_owned() } else { format!("{:.1}", 1e-3 * bytes) }
 }

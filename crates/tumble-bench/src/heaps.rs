@@ -22,6 +22,8 @@ const EDGE: usize = 10;
 /// Until then that heap has come to rest (s).
 const SETTLED: f64 = 2.0;
 const DT: f64 = 1e-4;
+/// Steps after heaps are put side by side, at rest and without friction springs, until they are timed.
+const SETTLING: usize = 100;
 const ROUNDS: usize = 9;
 /// Body-steps of a turn, at least.
 const TURN: usize = 200_000;
@@ -39,26 +41,27 @@ pub struct HeapCost {
     pub together: f64,
     /// How much faster two threads are: the median of the rounds.
     pub gain: f64,
-    /// Memory that the world took, a clump (bytes); NaN where the system does not tell.
+    /// Memory that the world took, a clump (bytes); NaN where that cannot be told.
     pub memory: f64,
 }
 
-/// Measures heaps of 1000 clumps and of that many times `tiles`, all in turns.
+/// Measures heaps of 1000 clumps times each of `tiles`, all in turns.
 ///
 /// # Errors
 /// What a world or a pool of threads could not be made of.
-pub fn heaps<const N: usize>(tiles: [usize; N]) -> Result<[HeapCost; N], Box<dyn Error>> {
+pub fn heaps(tiles: &[usize]) -> Result<Vec<HeapCost>, Box<dyn Error>> {
     let pool = |threads| ThreadPoolBuilder::new().num_threads(threads).build();
     let pools = [pool(1)?, pool(2)?];
     let tile = settled(&pools[1])?;
     let mut worlds = Vec::new();
-    for tiles in tiles {
+    for &tiles in tiles {
         let before = memory();
         let mut world = tiled(&tile, tiles)?;
-        step(&mut world, 2, &pools[1])?;
-        worlds.push((world, memory() - before));
+        step(&mut world, SETTLING, &pools[1])?;
+        // a small heap is made of what the first one has left
+        worlds.push((world, if tiles > 1 { memory() - before } else { f64::NAN }));
     }
-    let mut times = vec![[const { Vec::new() }; 3]; N];
+    let mut times = vec![[const { Vec::new() }; 3]; worlds.len()];
     for _ in 0..ROUNDS {
         for ((world, _), [alone, together, gain]) in worlds.iter_mut().zip(&mut times) {
             let steps = (TURN / world.body_count()).max(2);
@@ -68,7 +71,7 @@ pub fn heaps<const N: usize>(tiles: [usize; N]) -> Result<[HeapCost; N], Box<dyn
             gain.push(one / two);
         }
     }
-    let mut costs = worlds.iter().zip(times).map(|((world, memory), [alone, together, gain])| {
+    let costs = worlds.iter().zip(times).map(|((world, memory), [alone, together, gain])| {
         let clumps = world.body_count();
         HeapCost {
             clumps,
@@ -79,12 +82,7 @@ pub fn heaps<const N: usize>(tiles: [usize; N]) -> Result<[HeapCost; N], Box<dyn
             memory: memory / clumps as f64,
         }
     });
-    let mut next = || costs.next().ok_or("a heap is missing");
-    let mut all = Vec::with_capacity(N);
-    for _ in 0..N {
-        all.push(next()?);
-    }
-    all.try_into().map_err(|_| "a heap is missing".into())
+    Ok(costs.collect())
 }
 
 /// Steps a world; returns the time a body and step (ns).

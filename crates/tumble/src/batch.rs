@@ -58,7 +58,7 @@ impl Batch<'_> {
         self.bodies.is_empty()
     }
 
-    /// What the stages add to the tally.
+    /// The tally that stages add to: of few bodies that of the run so far, of many one for this batch.
     pub fn tally(&mut self) -> &mut Tally {
         &mut self.rooms[0].tally
     }
@@ -106,7 +106,7 @@ impl Batch<'_> {
     fn in_parallel(self, stages: &(impl Fn(&mut Batch) + Sync)) {
         let chunks = self.len().div_ceil(CHUNK);
         if chunks < 2 {
-            return Self { ..self }.alone(stages);
+            return self.alone(stages);
         }
         let (here, there) = self.split(chunks / 2 * CHUNK);
         rayon::join(|| here.in_parallel(stages), || there.in_parallel(stages));

@@ -7,7 +7,7 @@ use crate::batch::Room;
 use crate::parallel::CHUNK;
 use crate::stage::Meeting;
 
-/// Room for what is derived within a step. Dropping it between steps changes no result.
+/// Room for what is derived within a step of one model. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
     /// Which bodies may touch a wall or another body within the step.

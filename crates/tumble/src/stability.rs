@@ -3,7 +3,7 @@
 use glam::DMat3;
 
 use crate::shape::diagonalise;
-use crate::{BodyModel, ContactLaw, Model, WallPlane};
+use crate::{BodyModel, ContactLaw, Model, Surface, WallPlane};
 
 /// The longest stable step, and the body that sets it.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +14,9 @@ pub struct CriticalStep {
     pub body: String,
 }
 
+/// As many neighbours as twice this may stiffen the place of a ball: in a close packing, where neighbours move against each other, ω² = 8 k/M.
+const CLOSE: f64 = 4.0;
+
 /// The longest step with which contact is stable; `None` where nothing can touch.
 ///
 /// A particle of mass m on a spring k oscillates at ω = √(k/m), and a step above 2/ω makes it grow. With a
@@ -21,60 +24,70 @@ pub struct CriticalStep {
 /// contact, its stiffness over its mass is no more than that of one of them, and so is its rotational
 /// stiffness over its inertia; with mass spread otherwise the largest ratio over all motions takes the place
 /// of 1/m. So it does where particles are weighted by their areas, with the weights counted: the ratio of
-/// translation is still k/m of the mean particle, that of rotation may be more. Where bodies meet each other, two of a
-/// kind count, with all their particles. Walls that meet in a corner add up; of two that face each other the stiffer
-/// counts.
+/// translation is still k/m of the mean particle, that of rotation may be more. Friction turns spheres: of N spheres of radius r its springs and
+/// dashpots count N r²/I on top of N/M, I the smallest moment. Where bodies meet each other, two of a
+/// kind count, with all their particles, and spheres with at least the neighbours of a close packing. Walls that meet in a corner add up; of
+/// two that face each other the stiffer counts.
 pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
-    let of_body = |body: &BodyModel| {
-        let per_mass = match (body.shape.fastest_contact(), &body.drag_modes) {
-            (Some(fastest), _) => fastest / body.mass,
-            (None, Some(modes)) => modes.fastest(),
-            (None, None) => 1.0 / body.particle_mass(),
-        };
-        let sum = |normal: fn(&ContactLaw) -> f64, tangential: fn(&ContactLaw) -> f64| {
-            stiffest(&model.walls, &body.contacts, normal, tangential) * per_mass
-        };
-        let square = sum(
-            |law| law.stiffness,
-            |law| if law.friction > 0.0 { law.friction_spring } else { 0.0 },
-        );
-        let half_rate = 0.5
-            * sum(
-                |law| law.damping,
-                |law| if law.friction > 0.0 { law.friction_damping } else { 0.0 },
-            );
-        // two bodies alike, all particles of both in contact
-        let between = body.pair_material.law(&body.pair_material);
-        let meets = if model.meets { 2.0 * per_mass } else { 0.0 };
-        let square = square.max(between.stiffness.max(between.friction_spring) * meets);
-        let half_rate = half_rate.max(0.5 * between.damping.max(between.friction_damping) * meets);
-        // (2/ω)(√(1 + ζ²) − ζ), without cancellation and for ω = 0 too
-        2.0 / ((square + half_rate * half_rate).sqrt() + half_rate)
-    };
     let free = model.bodies.iter().filter(|body| body.is_free());
-    let steps = free.map(|body| (of_body(body), body));
+    let steps = free.map(|body| (critical_dt_of(model, body), body));
     let (dt, body) = steps.min_by(|a, b| a.0.total_cmp(&b.0))?;
     dt.is_finite().then(|| CriticalStep { dt, body: body.name.clone() })
 }
 
+fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
+    let per_mass = match (body.shape.fastest_contact(), &body.drag_modes) {
+        (Some(fastest), _) => fastest / body.mass,
+        (None, Some(modes)) => modes.fastest(),
+        (None, None) => 1.0 / body.particle_mass(),
+    };
+    let (lever, neighbours) = match body.surface {
+        Surface::Spheres { radius } => {
+            let count = body.shape.moments().count;
+            let rim = count * radius * radius * body.inverse_moments.max_element();
+            (1.0 + rim / per_mass, (CLOSE / count).max(1.0))
+        }
+        _ => (1.0, 1.0),
+    };
+    let springs = |law: &ContactLaw| {
+        let tangential = if law.friction > 0.0 { law.friction_spring } else { 0.0 };
+        [law.stiffness, lever * tangential]
+    };
+    let dashpots = |law: &ContactLaw| {
+        let tangential = if law.friction > 0.0 { law.friction_damping } else { 0.0 };
+        [law.damping, lever * tangential]
+    };
+    let at_walls = |terms: &dyn Fn(&ContactLaw) -> [f64; 2]| {
+        per_mass * stiffest(&model.walls, &body.contacts, terms)
+    };
+    // two bodies alike, all particles of both in contact
+    let law = body.pair_material.law(&body.pair_material);
+    let meets = if model.meets { 2.0 * per_mass * neighbours } else { 0.0 };
+    let between = |[normal, tangential]: [f64; 2]| meets * normal.max(tangential);
+    let square = at_walls(&springs).max(between(springs(&law)));
+    let half_rate = 0.5 * at_walls(&dashpots).max(between(dashpots(&law)));
+    // (2/ω)(√(1 + ζ²) − ζ), without cancellation and for ω = 0 too
+    2.0 / ((square + half_rate * half_rate).sqrt() + half_rate)
+}
+
 /// The largest eigenvalue of Σ (normal n nᵀ + tangential (1 − n nᵀ)) over walls that can be
-/// touched at once.
+/// touched at once; `terms` are both.
 fn stiffest(
     walls: &[WallPlane],
     laws: &[ContactLaw],
-    normal: fn(&ContactLaw) -> f64,
-    tangential: fn(&ContactLaw) -> f64,
+    terms: impl Fn(&ContactLaw) -> [f64; 2],
 ) -> f64 {
     let mut sum = DMat3::ZERO;
     let mut paired = vec![false; walls.len()];
     for (i, (wall, law)) in walls.iter().zip(laws).enumerate() {
-        let (mut along, mut across) = (normal(law), tangential(law));
+        let [mut along, mut across] = terms(law);
         // of two walls that face each other, the later one counts for what it has more
         let facing = (0..i).find(|&j| !paired[j] && walls[j].normal.dot(wall.normal) < -1.0 + 1e-9);
         if let Some(j) = facing {
             (paired[i], paired[j]) = (true, true);
-            along = (along - normal(&laws[j])).max(0.0);
-            across = (across - tangential(&laws[j])).max(0.0);
+            let [other_along, other_across] = terms(&laws[j]);
+            along = (along - other_along).max(0.0);
+            across = (across - other_across).max(0.0);
         }
         let n = wall.normal;
         let outer = DMat3::from_cols(n * n.x, n * n.y, n * n.z);
@@ -82,4 +95,60 @@ fn stiffest(
     }
     let (values, _) = diagonalise(sum.to_cols_array_2d());
     values.into_iter().fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::{Body, DVec3, Damping, Material, Shape, World, WorldBuilder};
+
+    /// A solid ball of radius 1 m and mass 1 kg.
+    fn ball(at: DVec3) -> Body {
+        let inertia = DMat3::IDENTITY * 0.4;
+        let mesh = crate::Mesh::default();
+        let shape = Shape::of_distribution(&[DVec3::ZERO], mesh, DVec3::ZERO, inertia).unwrap();
+        Body::new(shape).mass(1.0).surface(Surface::Spheres { radius: 1.0 }).position(at)
+    }
+
+    /// A floor, its friction springs as stiff as the normal ones, 100 N/m.
+    fn world(dt: f64) -> WorldBuilder {
+        let material = Material {
+            collision_stiffness: 100.0,
+            damping: Damping::Dashpot(0.0),
+            friction_stiffness: 100.0,
+            friction_spring: Some(100.0),
+            friction_damping: Some(0.0),
+            ..Material::default()
+        };
+        let floor = WallPlane { normal: DVec3::Y, offset: 0.0 };
+        let world = World::builder().dt(dt).gravity(DVec3::Y * -5.0).material(material);
+        world.wall(floor).force(true)
+    }
+
+    /// Largest spin of a ball that rests on the floor and is given a small one.
+    fn spin(dt: f64) -> f64 {
+        let ball = ball(DVec3::Y * 0.95).angular_velocity(DVec3::X * 1e-3);
+        let mut world = world(dt).body(ball).build().unwrap();
+        let mut most = 0.0f64;
+        for _ in 0..60 {
+            world.step().unwrap();
+            most = most.max(world.body(0).angular_velocity().length());
+        }
+        most
+    }
+
+    #[test]
+    fn friction_turns_balls_faster_than_springs_push_them() {
+        // k_t (1/M + r²/I) on the floor, and eight times as much in a close packing
+        let rate = 350.0f64;
+        let found = critical_dt(world(1e-3).body(ball(DVec3::Y * 5.0)).build().unwrap().model());
+        let dt = found.unwrap().dt;
+        assert!((dt * (8.0 * rate).sqrt() - 2.0).abs() < 1e-12, "{dt}");
+        // the slip oscillates with steps up to 2/ω and grows with longer ones
+        let critical = 2.0 / rate.sqrt();
+        let (below, above) = (spin(0.95 * critical), spin(1.05 * critical));
+        assert!(below < 1e-2 && above > 1e-1, "{below} {above}");
+    }
 }

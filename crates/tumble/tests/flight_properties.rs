@@ -7,8 +7,7 @@ use tumble::{
     stage,
 };
 
-/// One body that may be near a wall, and so flies with its neighbours.
-/// One flight for the time `h` (s).
+/// One flight of bodies that may be near a wall for the time `h` (s).
 fn fly_step(model: &Model, state: &mut State, h: f64) {
     let mut scratch = Scratch::default();
     each_batch(model, state, &mut scratch, |batch| {

@@ -55,7 +55,8 @@ impl Patch {
 
 /// The largest number of single precision that is not above a positive one; of any other, nothing to go by.
 fn below(x: f64) -> f32 {
-    if x > 0.0 { (x * (1.0 - SINGLE)) as f32 } else { f32::NEG_INFINITY }
+    let below = (x * (1.0 - SINGLE)).min(f64::from(f32::MAX));
+    if x > 0.0 { below as f32 } else { f32::NEG_INFINITY }
 }
 
 impl SignedDistance {

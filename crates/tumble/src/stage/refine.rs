@@ -37,7 +37,7 @@ const W5: f64 = 0.798_543_990_934_83;
 /// `tolerance` of the energy in play.
 pub fn refine(batch: &mut Batch, tolerance: f64) {
     let Batch { model, first, bodies, springs, near, forces, next, rooms, .. } = batch;
-    let Some(room) = rooms.first_mut() else { return };
+    let room = &mut rooms[0];
     for (index, body) in model.bodies[*first..].iter().take(bodies.len()).enumerate() {
         if !near[index] {
             continue;

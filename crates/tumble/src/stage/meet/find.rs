@@ -39,6 +39,8 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Two bodies that move so fast against each other that one could pass through the other in a step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TooFast {
+    /// Which pair of the list.
+    pair: u32,
     /// The body whose particle it is.
     pub body: u32,
     /// Which particle, by index.
@@ -170,6 +172,13 @@ impl Found {
         }
     }
 
+    /// Takes note of bodies that are too fast, if they are the first of the list.
+    fn warn(&mut self, too_fast: TooFast) {
+        if self.too_fast.is_none_or(|known| too_fast.pair < known.pair) {
+            self.too_fast = Some(too_fast);
+        }
+    }
+
     /// Writes down the springs of eight contacts after the latest push.
     #[inline(always)]
     fn keep(&mut self, number: usize, pairs: &[Pair]) {
@@ -238,7 +247,8 @@ impl<'a> Search<'a> {
             return sides.travel + (until - clock);
         }
         self.begin(pair);
-        let mut look = Look { pair, known, exact };
+        let margin = if exact { pair.margin.max(sides.way) } else { pair.margin };
+        let mut look = Look { pair, known, exact, margin };
         let mut quiet = f64::INFINITY;
         for (number, start) in (pair.start..pair.end).step_by(BLOCK).enumerate() {
             let mut of_block = *look.known.of_block(pair.listing, number);
@@ -273,8 +283,8 @@ impl<'a> Search<'a> {
     /// Takes note of a particle that could pass through a mesh within a step.
     #[inline(always)]
     fn watch(&mut self, sides: &Sides, pair: &Pair, clock: f64, point: &Point) {
-        if sides.passes(pair, clock, point.quiet) && self.found.too_fast.is_none() {
-            self.found.too_fast = Some(pair_too_fast(sides.model, pair, point, sides.way));
+        if sides.passes(pair, clock, point.quiet) {
+            self.found.warn(TooFast::of(sides.model, self.number, pair, point, sides.way));
         }
     }
 
@@ -344,7 +354,7 @@ impl<'a> Search<'a> {
     /// Tells the lists what was found in a lane, and finds the spring that was there.
     #[inline(always)]
     fn settle_lane(&mut self, lane: usize, pairs: &[Pair], points: &mut [Point]) {
-        let Found { eights, in_use, touching, number, approach, too_fast, .. } = &mut *self.found;
+        let Found { eights, in_use, touching, number, approach, .. } = &mut *self.found;
         let eight = &mut eights[*in_use];
         let of_list = touching[eight.touching[lane] as usize].pair as usize;
         let (pair, point) = (&pairs[of_list], &mut points[eight.point[lane] as usize]);
@@ -363,20 +373,23 @@ impl<'a> Search<'a> {
             point.quiet = travel - eight.depth[lane];
             eight.depth[lane] = 0.0;
         }
-        if way > pair.limit && travel + way > point.quiet && too_fast.is_none() {
-            *too_fast = Some(pair_too_fast(self.moment.model, pair, point, way));
+        if way > pair.limit && travel + way > point.quiet {
+            self.found.warn(TooFast::of(self.moment.model, of_list, pair, point, way));
         }
     }
 }
 
-/// A pair that is too fast, with one of its points.
-fn pair_too_fast(model: &Model, pair: &Pair, point: &Point, way: f64) -> TooFast {
-    let (body, other) = match pair.kind {
-        ContactKind::SecondInFirst => (pair.second, pair.first),
-        _ => (pair.first, pair.second),
-    };
-    let particle = model.bodies[body as usize].shape.particles().index_in(point.particle);
-    TooFast { body, particle, other, way, limit: pair.limit }
+impl TooFast {
+    /// A pair of the list, with one of its points, one body of which may come so far against the other in a step (m).
+    #[cold]
+    fn of(model: &Model, number: usize, pair: &Pair, point: &Point, way: f64) -> Self {
+        let (body, other) = match pair.kind {
+            ContactKind::SecondInFirst => (pair.second, pair.first),
+            _ => (pair.first, pair.second),
+        };
+        let particle = model.bodies[body as usize].shape.particles().index_in(point.particle);
+        Self { pair: number as u32, body, particle, other, way, limit: pair.limit }
+    }
 }
 
 /// Where a particle is (m); from the other sphere to its own (m), or n; and how far apart spheres touch, or the depth (m).

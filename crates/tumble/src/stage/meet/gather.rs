@@ -80,6 +80,9 @@ pub(super) fn foretell(
 }
 
 /// Adds what [`meet`](super::meet()) has found to the forces of [`contact`](crate::stage::contact()).
+///
+/// # Panics
+/// Where bodies can meet and `meet` has not been called before.
 pub fn feel(batch: &mut Batch) {
     if !batch.model.meets {
         return;

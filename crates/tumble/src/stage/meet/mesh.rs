@@ -169,6 +169,8 @@ pub(super) struct Look<'a> {
     pub known: &'a mut Known,
     /// Whether a particle that surely does not touch needs its distance all the same.
     pub exact: bool,
+    /// How far beyond its reach it is looked for (m).
+    pub margin: f64,
 }
 
 impl Look<'_> {
@@ -181,7 +183,7 @@ impl Look<'_> {
         (other, other_pose): (&BodyModel, &Pose),
     ) -> Result<(DVec3, DVec3, f64), f64> {
         let pair = self.pair;
-        let Some(solid) = &other.solid else { return Err(pair.margin) };
+        let Some(solid) = &other.solid else { return Err(self.margin) };
         let place = pose.place(body, point.particle);
         let inward = other_pose.rotation.transpose() * (place - other_pose.position);
         if !self.exact
@@ -190,8 +192,8 @@ impl Look<'_> {
             return Err(gap);
         }
         let patch = self.known.of(point);
-        let nearest = solid.query_near(inward, patch, pair.reach + pair.margin);
-        let Some(nearest) = nearest else { return Err(pair.margin) };
+        let nearest = solid.query_near(inward, patch, pair.reach + self.margin);
+        let Some(nearest) = nearest else { return Err(self.margin) };
         let depth = pair.reach - nearest.distance;
         if depth <= 0.0 {
             return Err(-depth);

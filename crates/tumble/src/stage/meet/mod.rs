@@ -28,7 +28,8 @@ pub(crate) use self::pose::Pose;
 pub(crate) use self::start::{overlaps, push_apart};
 use crate::parallel::{self, CHUNK};
 use crate::{
-    Batch, BodyForces, BodyModel, Integrator, Model, PairSpring, Scratch, State, each_batch,
+    Batch, BodyForces, BodyModel, BodyState, Integrator, Model, PairSpring, Scratch, State,
+    each_batch,
 };
 
 /// Room for contacts between bodies. Dropping it between steps changes no result.
@@ -40,15 +41,21 @@ pub(crate) struct Meeting {
     found: Vec<Found>,
 }
 
-/// Takes note of where the bodies are, and how far they have come.
+/// Takes note of where the bodies are, and how far they have come. [`meet`] needs that of all bodies.
 pub fn arrive(batch: &mut Batch) {
     let Batch { model, first, bodies, poses, .. } = batch;
-    for ((index, pose), state) in (*first..).zip(poses.iter_mut()).zip(&**bodies) {
+    move_all(model, *first, poses, bodies);
+}
+
+/// Poses of the bodies from number `first` on, as far as they are known.
+fn move_all(model: &Model, first: usize, poses: &mut [Pose], bodies: &[BodyState]) {
+    for ((index, pose), state) in (first..).zip(poses).zip(bodies) {
         *pose = pose.moved(model, index, state);
     }
 }
 
-/// Contact forces between bodies, and between spheres and walls. `h` (s) is the time since the latest kick. Under `splitting`
+/// Contact forces between bodies, and between spheres and walls, where [`arrive`] has found them; [`feel`] hands them out. `h` (s) is the time since
+/// the latest kick. Under `splitting`
 /// dashpots feel the mean of the velocities before and after the kick, under `euler` the velocities as they are.
 pub fn meet(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     if !model.meets {
@@ -83,21 +90,21 @@ impl Meeting {
     /// Puts the bodies where they are, and makes the lists anew where they no longer hold.
     fn place(&mut self, model: &Model, state: &State) {
         if self.poses.len() == model.bodies.len() {
-            for (index, pose) in self.poses.iter_mut().enumerate() {
-                *pose = pose.moved(model, index, &state.bodies[index]);
-            }
+            move_all(model, 0, &mut self.poses, &state.bodies);
         }
         self.list(model, state);
     }
 
     /// Makes the lists anew where they no longer hold for where the bodies are.
     fn list(&mut self, model: &Model, state: &State) {
-        let known = self.poses.len() == model.bodies.len();
+        // after a state that was none nothing is known
+        let known = self.poses.len() == model.bodies.len()
+            && self.poses.iter().all(|pose| pose.travel.is_finite());
         if !known {
             self.poses.clear();
             let states = state.bodies.iter().enumerate();
             self.poses.extend(states.map(|(index, state)| Pose::new(model, index, state)));
-            self.lists = Lists::default();
+            (self.lists, self.found) = (Lists::default(), Vec::new());
         }
         if !known || self.poses.iter().any(|pose| pose.travel > pose.until) {
             self.lists.make(model, &mut self.poses);
