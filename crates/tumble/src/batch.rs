@@ -142,7 +142,7 @@ pub fn each_batch(
         room.tally = if is_small { state.tally } else { Tally::default() };
     }
     let (poses, feelings) = meeting.parts();
-    let all = Batch {
+    let mut all = Batch {
         model,
         time: state.time,
         first: 0,
@@ -155,14 +155,15 @@ pub fn each_batch(
         rooms,
         feelings,
     };
-    if is_small || parallel::is_alone() {
+    if is_small {
+        stages(&mut all);
+        state.tally = rooms[0].tally;
+        return;
+    }
+    if parallel::is_alone() {
         all.alone(&stages)
     } else {
         all.in_parallel(&stages)
     }
-    if is_small {
-        state.tally = rooms.first().map_or(state.tally, |room| room.tally);
-    } else {
-        rooms.iter().for_each(|room| state.tally += room.tally);
-    }
+    rooms.iter().for_each(|room| state.tally += room.tally);
 }
