@@ -72,24 +72,9 @@ impl Batch<'_> {
         let (next, other_next) = self.next.split_at_mut(count);
         let (poses, other_poses) = self.poses.split_at_mut(count.min(self.poses.len()));
         let (rooms, other_rooms) = self.rooms.split_at_mut(count / CHUNK);
-        let Self { model, time, first, feelings, .. } = self;
-        let here = Self {
-            model,
-            time,
-            first,
-            bodies,
-            springs,
-            near,
-            forces,
-            next,
-            poses,
-            rooms,
-            feelings,
-        };
+        let here = Self { bodies, springs, near, forces, next, poses, rooms, ..self };
         let there = Self {
-            model,
-            time,
-            first: first + count,
+            first: here.first + count,
             bodies: other_bodies,
             springs: other_springs,
             near: other_near,
@@ -97,7 +82,7 @@ impl Batch<'_> {
             next: other_next,
             poses: other_poses,
             rooms: other_rooms,
-            feelings,
+            ..here
         };
         (here, there)
     }

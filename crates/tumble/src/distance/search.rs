@@ -39,7 +39,8 @@ trait Looking {
     /// A group that is looked at.
     fn look_at(&mut self, group: u32, squared: &[f64; WIDTH], tree: &Tree);
     /// Groups that are not, since they are at least this far away (squared, m²).
-    fn leave_out(&mut self, squared: f64);
+    #[inline(always)]
+    fn leave_out(&mut self, _squared: f64) {}
 }
 
 /// The closest so far.
@@ -105,9 +106,6 @@ impl Looking for Best {
             }
         }
     }
-
-    #[inline(always)]
-    fn leave_out(&mut self, _: f64) {}
 }
 
 impl Looking for Wide {
@@ -149,9 +147,6 @@ impl Looking for Any {
             self.limit = -1.0;
         }
     }
-
-    #[inline(always)]
-    fn leave_out(&mut self, _: f64) {}
 }
 
 impl Around {

@@ -52,7 +52,7 @@ pub(crate) struct TooFast {
     pub limit: f64,
 }
 
-/// A pair that has contacts, and what they do.
+/// A pair whose points were looked at, and what its contacts do.
 #[derive(Clone, Debug)]
 pub(super) struct Touching {
     /// Which pair of the list.
@@ -211,6 +211,7 @@ struct Listed<'a> {
     known: &'a mut Known,
 }
 
+/// What is known of the points in the lanes, besides what they are found from.
 #[derive(Default)]
 struct Asked {
     /// How far both bodies have come together (m).

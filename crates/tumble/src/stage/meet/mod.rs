@@ -54,9 +54,9 @@ fn move_all(model: &Model, first: usize, poses: &mut [Pose], bodies: &[BodyState
     }
 }
 
-/// Contact forces between bodies, and between spheres and walls, where [`arrive`] has found them; [`feel`] hands them out. `h` (s) is the time since
-/// the latest kick. Under `splitting`
-/// dashpots feel the mean of the velocities before and after the kick, under `euler` the velocities as they are.
+/// Contact forces between bodies, and between spheres and walls, where [`arrive`] has found them; [`feel`] hands
+/// them out. `h` (s) is the time since the latest kick. Under `splitting` dashpots feel the mean of the velocities before and after the
+/// kick, under `euler` the velocities as they are.
 pub fn meet(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     if !model.meets {
         return;
@@ -97,18 +97,19 @@ impl Meeting {
 
     /// Makes the lists anew where they no longer hold for where the bodies are.
     fn list(&mut self, model: &Model, state: &State) {
+        let known = self.poses.len() == model.bodies.len();
+        // NaN is not below it
+        if known && self.poses.iter().all(|pose| pose.travel <= pose.until) {
+            return;
+        }
         // after a state that was none nothing is known
-        let known = self.poses.len() == model.bodies.len()
-            && self.poses.iter().all(|pose| pose.travel.is_finite());
-        if !known {
+        if !known || !self.poses.iter().all(|pose| pose.travel.is_finite()) {
             self.poses.clear();
             let states = state.bodies.iter().enumerate();
             self.poses.extend(states.map(|(index, state)| Pose::new(model, index, state)));
             (self.lists, self.found) = (Lists::default(), Vec::new());
         }
-        if !known || self.poses.iter().any(|pose| pose.travel > pose.until) {
-            self.lists.make(model, &mut self.poses);
-        }
+        self.lists.make(model, &mut self.poses);
     }
 
     /// Where the bodies are, and what they feel of each other.
