@@ -1,5 +1,6 @@
 //! Changing one key of a scene, and moving a state into the model that comes of it.
 
+use std::sync::Arc;
 use std::path::Path;
 
 use toml::{Table, Value};
@@ -112,7 +113,7 @@ pub fn transplant(old: &World, new: &mut World) -> Result<(), String> {
         state.time = state.step as f64 * after.dt;
     }
     let friction = |world: &World| -> Vec<f64> {
-        let of_body = |body: &tumble::BodyModel| {
+        let of_body = |body: &Arc<tumble::BodyModel>| {
             body.contacts.iter().map(|law| law.friction).collect::<Vec<_>>()
         };
         world.model().bodies.iter().flat_map(of_body).collect()
@@ -134,11 +135,11 @@ pub fn transplant(old: &World, new: &mut World) -> Result<(), String> {
     if after.energy_tolerance.is_none() {
         state.bodies.iter_mut().for_each(|body| body.energy_owed = 0.0);
     }
-    for (body, place) in after.bodies.iter().zip(&state.bodies) {
+    for (name, place) in after.names.iter().zip(&state.bodies) {
         if after.walls.iter().any(|wall| wall.depth(place.position) > 0.0)
             && before.walls != after.walls
         {
-            return Err(format!("the centre of body \"{}\" would lie behind a wall", body.name));
+            return Err(format!("the centre of body \"{name}\" would lie behind a wall"));
         }
     }
     new.restore(state).map_err(|error| format!("the motion cannot go on: {error}; reset first"))

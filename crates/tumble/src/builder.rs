@@ -2,6 +2,7 @@
 
 mod twins;
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
@@ -29,7 +30,7 @@ pub struct Body {
     motion: Motion,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Mass {
     Total(f64),
     Particle(f64),
@@ -111,14 +112,28 @@ impl Body {
         self.motion = motion;
         self
     }
+
+    /// Whether all that is constant about it is the same of another.
+    fn is_like(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.shape, &other.shape)
+            && self.mass == other.mass
+            && self.material == other.material
+            && self.surface == other.surface
+            && self.motion == other.motion
+    }
 }
 
-/// What bodies of one shape share.
+/// What bodies share.
 #[derive(Default)]
-struct Shared {
+struct Shared<'a> {
     solids: Solids,
     twins: Twins,
+    /// The latest bodies that are not alike, up to [`KINDS`].
+    kinds: VecDeque<(&'a Body, Arc<BodyModel>)>,
 }
+
+/// Bodies that are alike are mostly described one after the other, or as a mixture of a few kinds.
+const KINDS: usize = 16;
 
 /// A world as a user describes it; [`WorldBuilder::build`] checks it.
 #[derive(Clone, Debug)]
@@ -242,13 +257,15 @@ impl WorldBuilder {
             gap: smallest_gap(&self.walls),
             meets: self.bodies.iter().any(|body| body.surface != Surface::None),
             bodies: Vec::with_capacity(self.bodies.len()),
+            names: Vec::with_capacity(self.bodies.len()),
         };
         let (mut state, mut shared) = (State::default(), Shared::default());
         for (index, body) in self.bodies.iter().enumerate() {
             let name = body.name.clone().unwrap_or_else(|| format!("body {index}"));
-            match self.start(&model, name, body, &mut shared) {
+            match self.start(&model, &name, body, &mut shared) {
                 Ok((body_model, body_state)) => {
                     model.bodies.push(body_model);
+                    model.names.push(name);
                     state.bodies.push(body_state);
                     state.springs.push(Vec::new());
                 }
@@ -301,16 +318,26 @@ impl WorldBuilder {
     }
 
     /// One body at t = 0, checked.
-    fn start(
+    fn start<'a>(
         &self,
         model: &Model,
-        name: String,
-        body: &Body,
-        shared: &mut Shared,
-    ) -> Result<(BodyModel, BodyState), BuildError> {
-        let body_model = self.body_model(name, body, shared)?;
-        let body_state = body_state(&body_model, body)?;
-        check_inside(model, &body_model, &body_state)?;
+        name: &str,
+        body: &'a Body,
+        shared: &mut Shared<'a>,
+    ) -> Result<(Arc<BodyModel>, BodyState), BuildError> {
+        let known = shared.kinds.iter().rev().find(|(kind, _)| kind.is_like(body));
+        let body_model = if let Some((_, body_model)) = known {
+            Arc::clone(body_model)
+        } else {
+            let made = Arc::new(self.body_model(name, body, shared)?);
+            if shared.kinds.len() == KINDS {
+                shared.kinds.pop_front();
+            }
+            shared.kinds.push_back((body, Arc::clone(&made)));
+            made
+        };
+        let body_state = body_state(&body_model, name, body)?;
+        check_inside(model, &body_model, name, &body_state)?;
         Ok((body_model, body_state))
     }
 
@@ -325,12 +352,18 @@ impl WorldBuilder {
 
     fn body_model(
         &self,
-        name: String,
+        name: &str,
         body: &Body,
         shared: &mut Shared,
     ) -> Result<BodyModel, BuildError> {
+        let refuse = |quantity, value, allowed| BuildError::Body {
+            body: name.to_owned(),
+            quantity,
+            value,
+            allowed,
+        };
         if let Some((quantity, value, allowed)) = check_body(body, self.dt) {
-            return Err(BuildError::Body { body: name, quantity, value, allowed });
+            return Err(refuse(quantity, value, allowed));
         }
         let (quantity, value, mass) = match body.mass {
             Mass::Total(mass) => ("mass", mass, mass),
@@ -338,18 +371,13 @@ impl WorldBuilder {
                 ("particle_mass", mass, mass * body.shape.particles().len() as f64)
             }
         };
-        let solid = shared.solids.of(&name, &body.shape, body.surface)?;
+        let solid = shared.solids.of(name, &body.shape, body.surface)?;
         let inertia = body.shape.gyration() * mass;
         let inverse_inertia = body.shape.principal().inverse() * (1.0 / mass);
         let fits = inertia.is_finite() && inverse_inertia.is_finite();
         if !(mass > 0.0 && mass.is_finite() && value.is_finite() && fits) {
             let allowed = "a number of kg above 0, such that the inertia is finite";
-            return Err(BuildError::Body {
-                body: name,
-                quantity,
-                value: value.to_string(),
-                allowed,
-            });
+            return Err(refuse(quantity, value.to_string(), allowed));
         }
         let (is_free, has_spheres) =
             (body.motion == Motion::Free, matches!(body.surface, Surface::Spheres { .. }));
@@ -361,18 +389,10 @@ impl WorldBuilder {
             Some(stiffness) if has_spheres => {
                 let allowed = "left out where a body has spheres, which touch at points: give it a \
                                `collision_stiffness` of its own";
-                return Err(BuildError::Body {
-                    body: name,
-                    quantity: "collision_stiffness_per_area",
-                    value: stiffness.to_string(),
-                    allowed,
-                });
+                return Err(refuse("collision_stiffness_per_area", stiffness.to_string(), allowed));
             }
-            Some(stiffness) => shared.twins.of(&body.shape).map_err(|error| BuildError::Body {
-                body: name.clone(),
-                quantity: "collision_stiffness_per_area",
-                value: stiffness.to_string(),
-                allowed: error.allowed(),
+            Some(stiffness) => shared.twins.of(&body.shape).map_err(|error| {
+                refuse("collision_stiffness_per_area", stiffness.to_string(), error.allowed())
             })?,
             None => Arc::clone(&body.shape),
         };
@@ -382,7 +402,6 @@ impl WorldBuilder {
         let moments = body.shape.principal().moments * mass;
         let inverse_moments = moments.to_array().map(|m| if m > 0.0 { 1.0 / m } else { 0.0 });
         Ok(BodyModel {
-            name,
             shape,
             mass,
             inertia,
@@ -420,7 +439,7 @@ fn extent(shape: &Shape, surface: Surface) -> f64 {
 
 /// Bodies that start in each other, deeper than contact alone could press them.
 fn overlaps(model: &Model, state: &State) -> Vec<BuildError> {
-    let name = |index: u32| model.bodies[index as usize].name.clone();
+    let name = |index: u32| model.names[index as usize].clone();
     let pairs = crate::stage::overlaps(model, state).into_iter();
     pairs
         .map(|(first, second, depth)| BuildError::Overlap {
@@ -489,10 +508,10 @@ fn check_material(
 }
 
 /// Where a body starts; L = R I₀ Rᵀ ω.
-fn body_state(model: &BodyModel, body: &Body) -> Result<BodyState, BuildError> {
+fn body_state(model: &BodyModel, name: &str, body: &Body) -> Result<BodyState, BuildError> {
     let refuse = |quantity, value: &dyn std::fmt::Display, allowed| {
         Err(BuildError::Body {
-            body: model.name.clone(),
+            body: name.to_owned(),
             quantity,
             value: value.to_string(),
             allowed,
@@ -538,20 +557,25 @@ fn body_state(model: &BodyModel, body: &Body) -> Result<BodyState, BuildError> {
 
 /// A body that starts with its centre of mass behind a wall, deeper than ten times the depth at
 /// which the springs of its particles carry its weight, was put there by mistake.
-fn check_inside(model: &Model, body: &BodyModel, state: &BodyState) -> Result<(), BuildError> {
+fn check_inside(
+    model: &Model,
+    body: &BodyModel,
+    name: &str,
+    state: &BodyState,
+) -> Result<(), BuildError> {
     for (wall, law) in model.walls.iter().zip(&body.contacts) {
         let depth = wall.depth(state.position);
         let sag = body.particle_mass() * model.gravity.length() / law.stiffness;
         if depth > 10.0 * sag {
             let normal = wall.normal.to_array();
-            return Err(BuildError::Outside { body: body.name.clone(), normal, depth });
+            return Err(BuildError::Outside { body: name.to_owned(), normal, depth });
         }
     }
     Ok(())
 }
 
 fn same_names(model: &Model) -> Vec<BuildError> {
-    let mut names: Vec<_> = model.bodies.iter().map(|body| &body.name).collect();
+    let mut names: Vec<_> = model.names.iter().collect();
     names.sort_unstable();
     let mut twice: Vec<_> =
         names.windows(2).filter(|pair| pair[0] == pair[1]).map(|pair| pair[0]).collect();

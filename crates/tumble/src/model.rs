@@ -50,15 +50,15 @@ pub struct Model {
     pub gap: Option<f64>,
     /// Whether there is a body that others can meet.
     pub meets: bool,
-    /// One entry a body.
-    pub bodies: Vec<BodyModel>,
+    /// One entry a body; bodies that are alike share theirs, so that it is at hand when the next of them is looked at.
+    pub bodies: Vec<Arc<BodyModel>>,
+    /// The names of the bodies.
+    pub names: Vec<String>,
 }
 
-/// What is constant about one body.
+/// What is constant about one body, and about all that are like it.
 #[derive(Clone, Debug)]
 pub struct BodyModel {
-    /// Its name.
-    pub name: String,
     /// Its particles and mass distribution; with weights where any of its contacts is stiff per area.
     pub shape: Arc<Shape>,
     /// Mass M (kg).

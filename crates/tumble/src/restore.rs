@@ -99,7 +99,7 @@ impl State {
         if self.time != expected {
             return Err(StateError::Time { time: self.time, expected });
         }
-        for (body, state) in model.bodies.iter().zip(&self.bodies) {
+        for (name, state) in model.names.iter().zip(&self.bodies) {
             let q = state.orientation;
             let values = [
                 ("position", state.position.is_finite()),
@@ -109,10 +109,10 @@ impl State {
                 ("angular_momentum", state.angular_momentum.is_finite()),
                 ("energy_owed", state.energy_owed.is_finite()),
             ];
-            possible(&body.name, &values)?;
+            possible(name, &values)?;
         }
-        for (body, springs) in model.bodies.iter().zip(&self.springs) {
-            fitting_springs(body, springs)?;
+        for ((body, name), springs) in model.bodies.iter().zip(&model.names).zip(&self.springs) {
+            fitting_springs(body, name, springs)?;
         }
         fitting_pair_springs(model, &self.pair_springs)?;
         let tally = &self.tally;
@@ -135,7 +135,11 @@ fn possible(body: &str, values: &[(&'static str, bool)]) -> Result<(), StateErro
 }
 
 /// Springs of walls and particles that are there, each once, in order.
-fn fitting_springs(body: &BodyModel, springs: &[FrictionSpring]) -> Result<(), StateError> {
+fn fitting_springs(
+    body: &BodyModel,
+    name: &str,
+    springs: &[FrictionSpring],
+) -> Result<(), StateError> {
     let (walls, particles) = (body.contacts.len(), body.shape.particles());
     let mut before = None;
     for spring in springs {
@@ -143,14 +147,14 @@ fn fitting_springs(body: &BodyModel, springs: &[FrictionSpring]) -> Result<(), S
         let key = there.then(|| (spring.wall, particles.slot_of(spring.particle)));
         if key.is_none() || before >= key {
             return Err(StateError::Spring {
-                body: body.name.clone(),
+                body: name.to_owned(),
                 wall: spring.wall,
                 particle: spring.particle,
             });
         }
         let springs =
             [("anchor", spring.anchor.is_finite()), ("stretch", spring.stretch.is_finite())];
-        possible(&body.name, &springs)?;
+        possible(name, &springs)?;
         before = key;
     }
     Ok(())

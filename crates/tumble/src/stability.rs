@@ -29,10 +29,10 @@ const CLOSE: f64 = 4.0;
 /// kind count, with all their particles, and spheres with at least the neighbours of a close packing. Walls that meet in a corner add up; of
 /// two that face each other the stiffer counts.
 pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
-    let free = model.bodies.iter().filter(|body| body.is_free());
-    let steps = free.map(|body| (critical_dt_of(model, body), body));
-    let (dt, body) = steps.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    dt.is_finite().then(|| CriticalStep { dt, body: body.name.clone() })
+    let free = model.bodies.iter().zip(&model.names).filter(|(body, _)| body.is_free());
+    let steps = free.map(|(body, name)| (critical_dt_of(model, body), name));
+    let (dt, name) = steps.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    dt.is_finite().then(|| CriticalStep { dt, body: name.clone() })
 }
 
 fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {

@@ -1,5 +1,7 @@
 //! What a user holds: build, step, read.
 
+use std::sync::Arc;
+
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::stage::{self, Pull};
@@ -51,7 +53,7 @@ impl World {
         let fits = hand.is_none_or(|Pull { body, particle, target }| {
             let body = self.model.bodies.get(body);
             let there =
-                |body: &BodyModel| body.is_free() && particle < body.shape.particles().len();
+                |body: &Arc<BodyModel>| body.is_free() && particle < body.shape.particles().len();
             body.is_some_and(there) && target.is_finite()
         });
         if fits {
@@ -112,7 +114,11 @@ impl World {
     /// # Panics
     /// When `index` is not below [`World::body_count`].
     pub fn body(&self, index: usize) -> BodyView<'_> {
-        BodyView { model: &self.model.bodies[index], state: &self.state.bodies[index] }
+        BodyView {
+            name: &self.model.names[index],
+            model: &self.model.bodies[index],
+            state: &self.state.bodies[index],
+        }
     }
 
     /// All bodies, in the order in which they were added.
@@ -135,6 +141,7 @@ impl World {
 /// Read access to one body.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyView<'a> {
+    name: &'a str,
     model: &'a BodyModel,
     state: &'a BodyState,
 }
@@ -142,7 +149,7 @@ pub struct BodyView<'a> {
 impl<'a> BodyView<'a> {
     /// Its name.
     pub fn name(&self) -> &'a str {
-        &self.model.name
+        self.name
     }
 
     /// Its mass, inertia, shape: all that is constant.

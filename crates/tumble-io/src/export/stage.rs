@@ -87,7 +87,7 @@ impl Form {
 }
 
 /// The colour of a body as light, not as it is stored in pictures: red, green, blue and opacity from 0 to 1.
-fn linear_colour((index, body): (usize, &BodyModel)) -> [f32; 4] {
+fn linear_colour((index, body): (usize, &Arc<BodyModel>)) -> [f32; 4] {
     let is_driven = is_driven(body);
     let stored = if is_driven { DRIVEN } else { colour(index) };
     let [r, g, b] = stored.map(|byte| {

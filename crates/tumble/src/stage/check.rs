@@ -33,7 +33,7 @@ pub fn refuse(model: &Model, state: &State, scratch: &mut Scratch) -> Result<(),
         return Err(StepError {
             step: state.step,
             time: state.time,
-            body: model.bodies[index].name.clone(),
+            body: model.names[index].clone(),
             particle,
             quantity,
             value,
@@ -50,7 +50,7 @@ pub fn refuse(model: &Model, state: &State, scratch: &mut Scratch) -> Result<(),
 
 /// Two bodies so fast that one could pass through the other unseen.
 fn passes_through(model: &Model, state: &State, pair: &TooFast) -> StepError {
-    let name = |body: u32| model.bodies[body as usize].name.clone();
+    let name = |body: u32| model.names[body as usize].clone();
     StepError {
         step: state.step,
         time: state.time,

@@ -83,7 +83,7 @@ pub(super) fn around_a_centre(model: &Model, state: &State) -> Vec<Overlap> {
     });
     let balls: Vec<_> = balls.collect();
     // how deep each centre is in its own body
-    let own = |body: &BodyModel| depth(body, DVec3::ZERO);
+    let own = |body: &Arc<BodyModel>| depth(body, DVec3::ZERO);
     let own: Vec<_> = model.bodies.iter().map(own).collect();
     let within = |centre: u32, other: u32| {
         if own[centre as usize] <= 0.0 {

@@ -454,7 +454,7 @@ impl<'a> Sides<'a> {
 
     /// The particle of a pair, and the mesh: of which body, and where that is.
     fn at_mesh(&self, pair: &Pair) -> [(&BodyModel, &Pose); 2] {
-        let body = |index: u32| &self.model.bodies[index as usize];
+        let body = |index: u32| &*self.model.bodies[index as usize];
         let (a, b) = ((body(pair.first), self.first), (body(pair.second), self.second));
         if pair.kind == ContactKind::FirstInSecond { [a, b] } else { [b, a] }
     }
