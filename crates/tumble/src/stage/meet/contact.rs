@@ -76,12 +76,10 @@ pub(super) struct Approach {
     pub known: [f64; LANES],
 }
 
-/// What the contacts of two bodies do together: to the first body as they are, to the second the other way round.
+/// What of the contacts of two bodies is kept and accounted for besides their forces.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct PairForces {
-    /// Springs and dashpots, normal and tangential.
-    pub all: Couple,
-    /// The dashpots alone.
+pub(super) struct Losses {
+    /// What the dashpots do to the first body, and the other way round to the second.
     pub dashpot: Couple,
     /// Energy lost to slip (J).
     pub slip: f64,
@@ -93,7 +91,8 @@ pub(super) struct PairForces {
     pub belt_loss: f64,
 }
 
-/// A force at a point, and its torques about two centres of mass.
+/// A force at a point, and its torques about two centres of mass: to the first body as they are, to the second the other way
+/// round.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Couple {
     pub force: DVec3,
@@ -276,7 +275,8 @@ impl Eight {
         &mut self,
         simd: S,
         poses: &[Pose],
-        sums: &mut [Touching],
+        touching: &mut [Touching],
+        losses: &mut [Losses],
     ) {
         let n = Vec3x8::load(simd, &self.normal);
         let (arm, other_arm) = (Vec3x8::load(simd, &self.arm), Vec3x8::load(simd, &self.other_arm));
@@ -307,14 +307,15 @@ impl Eight {
         let all = Couples::of(force, arm, other_arm);
         if FIRST {
             for lane in self.in_contact() {
-                all.add_to(lane, &mut sums[self.touching[lane] as usize].forces.all);
+                all.add_to(lane, &mut touching[self.touching[lane] as usize].forces);
             }
             return;
         }
         let brake = Couples::of(brake, arm, other_arm);
         for lane in self.in_contact() {
-            let sum = &mut sums[self.touching[lane] as usize].forces;
-            all.add_to(lane, &mut sum.all);
+            let pair = self.touching[lane] as usize;
+            all.add_to(lane, &mut touching[pair].forces);
+            let sum = &mut losses[pair];
             brake.add_to(lane, &mut sum.dashpot);
             sum.slip += slip[lane];
             sum.max_depth = sum.max_depth.max(self.depth[lane]);

@@ -3,8 +3,8 @@
 use fearless_simd::Simd;
 use glam::DVec3;
 
-use super::contact::{Approach, Eight, PairForces};
-use super::list::{self, Near, Pair, Point};
+use super::contact::{Approach, Couple, Eight, Losses};
+use super::list::{Near, Pair, Point};
 use super::mesh::{BLOCK, Known, Look, View};
 use super::pose::{self, Pose};
 use super::springs::OldSprings;
@@ -17,10 +17,10 @@ pub(super) struct Found {
     /// The points that were looked at, pair by pair; what is beyond the number in use is room.
     eights: Vec<Eight>,
     in_use: usize,
-    /// Which list they are from.
-    made: u64,
     /// The pairs with such points.
     pub touching: Vec<Touching>,
+    /// Their losses, after the latest push that was no first look.
+    pub losses: Vec<Losses>,
     /// For each pair of the list, which of `touching` it is if it has a contact, or `NONE`.
     pub number: Vec<u32>,
     /// Energy (J) of springs that have come loose, by body of the chunk.
@@ -32,6 +32,9 @@ pub(super) struct Found {
     /// Room for what eight of them are found from.
     approach: Approach,
 }
+
+/// Room for the contacts of a chunk, and for their springs.
+pub(super) type ContactRoom = (Vec<Eight>, Vec<PairSpring>);
 
 /// Marks a pair without contact.
 pub(super) const NONE: u32 = u32::MAX;
@@ -59,8 +62,8 @@ pub(super) struct Touching {
     pub pair: u32,
     /// The first body.
     pub first: u32,
-    /// The total of its forces.
-    pub forces: PairForces,
+    /// The total of its forces: springs and dashpots, normal and tangential.
+    pub forces: Couple,
 }
 
 /// What contacts are found from.
@@ -85,12 +88,10 @@ impl Found {
         moment: &Moment,
         body: usize,
     ) {
-        if std::mem::replace(&mut self.made, near.made) != near.made {
-            self.eights.clear();
-        }
         self.in_use = 0;
         self.springs.clear();
         self.touching.clear();
+        self.losses.clear();
         self.number.clear();
         self.number.resize(near.pairs.len(), NONE);
         self.too_fast = None;
@@ -98,8 +99,8 @@ impl Found {
         let mut search = Search::new(self, moment, springs);
         let Near { pairs, points, known, .. } = near;
         for number in 0..pairs.len() {
-            let pair = &pairs[number];
-            let sides = Sides::of(moment, pair);
+            let pair = pairs[number];
+            let sides = Sides::of(moment, &pair);
             if sides.travel < pair.quiet && sides.way <= pair.limit {
                 continue;
             }
@@ -109,45 +110,55 @@ impl Found {
                 pairs[number].quiet = search.ask_mesh::<S, FIRST>(simd, &sides, lists);
                 continue;
             }
-            search.begin(pair);
+            search.begin::<FIRST>(&pair);
+            // of those that are asked, the lanes tell
+            let mut quiet = f64::INFINITY;
+            pairs[number].quiet = quiet;
             for index in pair.start..pair.end {
-                let point = &points[index as usize];
-                if (sides.travel >= point.quiet || sides.passes(pair, sides.travel, point.quiet))
-                    && search.ask(&sides, pair, index, sides.geometry(pair, point), point) == LANES
-                {
+                let point = points[index as usize];
+                if sides.travel < point.quiet && !sides.passes(&pair, sides.travel, point.quiet) {
+                    quiet = quiet.min(point.quiet);
+                    continue;
+                }
+                let geometry = sides.geometry(&pair, &point);
+                if search.ask(&sides, &pair, index, geometry, &point) == LANES {
                     search.settle::<S, FIRST>(simd, pairs, points);
                 }
             }
+            pairs[number].quiet = pairs[number].quiet.min(quiet);
         }
         search.settle::<S, FIRST>(simd, pairs, points);
         search.springs.release_all();
         self.released = search.springs.released;
-        self.set_quiet(near);
-    }
-
-    /// Until when the pairs that were looked at are quiet.
-    fn set_quiet(&self, near: &mut Near) {
-        for touching in &self.touching {
-            let pair = &mut near.pairs[touching.pair as usize];
-            if pair.is_at_mesh() {
-                continue;
-            }
-            let points = &near.points[pair.start as usize..pair.end as usize];
-            pair.quiet = points.iter().fold(f64::INFINITY, |quiet, point| quiet.min(point.quiet));
-        }
     }
 
     /// The forces of all contacts with the velocities of `poses`, and the springs that go on.
     #[inline(always)]
     pub fn push<S: Simd>(&mut self, simd: S, near: &Near, poses: &[Pose]) {
         for touching in &mut self.touching {
-            touching.forces = PairForces::default();
+            touching.forces = Couple::default();
         }
+        self.losses.clear();
+        self.losses.resize(self.touching.len(), Losses::default());
         self.springs.clear();
         for number in 0..self.in_use {
-            self.eights[number].push::<S, false>(simd, poses, &mut self.touching);
+            let Self { eights, touching, losses, .. } = self;
+            eights[number].push::<S, false>(simd, poses, touching, losses);
             self.keep(number, &near.pairs);
         }
+    }
+
+    /// Takes room that another chunk no longer needs, if it has none of its own.
+    pub fn take_room(&mut self, room: &mut Vec<ContactRoom>) {
+        if self.eights.is_empty() && let Some(room) = room.pop() {
+            (self.eights, self.springs) = room;
+        }
+    }
+
+    /// Gives up its contacts and springs, which are pushed and written down, as room for another chunk.
+    pub fn give_room(&mut self) -> ContactRoom {
+        self.in_use = 0;
+        (std::mem::take(&mut self.eights), std::mem::take(&mut self.springs))
     }
 
     /// Energy in the springs (J).
@@ -206,7 +217,7 @@ struct Search<'a> {
 
 /// What is listed, while points near meshes are looked at.
 struct Listed<'a> {
-    pairs: &'a [Pair],
+    pairs: &'a mut [Pair],
     points: &'a mut [Point],
     known: &'a mut Known,
 }
@@ -226,10 +237,14 @@ impl<'a> Search<'a> {
     }
 
     /// Goes on to a pair.
-    fn begin(&mut self, pair: &Pair) {
-        let forces = PairForces::default();
+    #[inline(always)]
+    fn begin<const FIRST: bool>(&mut self, pair: &Pair) {
+        let forces = Couple::default();
         let pair = Touching { pair: self.number as u32, first: pair.first, forces };
         self.found.touching.push(pair);
+        if !FIRST {
+            self.found.losses.push(Losses::default());
+        }
     }
 
     /// Takes the particles of a body that touch the mesh of another into lanes; returns until when the pair is quiet (m of travel).
@@ -241,13 +256,13 @@ impl<'a> Search<'a> {
         lists: Listed,
     ) -> f64 {
         let Listed { pairs, points, known } = lists;
-        let pair = &pairs[self.number];
+        let pair = &pairs[self.number].clone();
         let exact = sides.way > pair.limit;
         let (clock, until) = known.time(pair.listing, &sides.view(pair), sides.travel);
         if clock < until && !exact {
             return sides.travel + (until - clock);
         }
-        self.begin(pair);
+        self.begin::<FIRST>(pair);
         let margin = if exact { pair.margin.max(sides.way) } else { pair.margin };
         let mut look = Look { pair, known, exact, margin };
         let mut quiet = f64::INFINITY;
@@ -309,11 +324,11 @@ impl<'a> Search<'a> {
         // meshes are watched by a clock of their own
         self.asked.way[lane] = if pair.is_at_mesh() { 0.0 } else { sides.way };
         eight.touching[lane] = touching.len() as u32 - 1;
-        // in a heap at rest it is the same points every time
-        if eight.point[lane] != index {
-            eight.point[lane] = index;
-            sides.take_law(pair, point, lane, eight);
+        eight.point[lane] = index;
+        if lane == 0 {
+            (eight.has_friction, eight.has_belt) = (false, false);
         }
+        sides.take_law(pair, point, lane, eight);
         sides.approach(geometry, lane, approach);
         self.count = lane + 1;
         self.count
@@ -324,7 +339,7 @@ impl<'a> Search<'a> {
     fn settle<S: Simd, const FIRST: bool>(
         &mut self,
         simd: S,
-        pairs: &[Pair],
+        pairs: &mut [Pair],
         points: &mut [Point],
     ) {
         let count = std::mem::take(&mut self.count);
@@ -339,14 +354,14 @@ impl<'a> Search<'a> {
         for lane in 0..count {
             self.settle_lane(lane, pairs, points);
         }
-        let Found { eights, in_use, approach, touching, .. } = &mut *self.found;
+        let Found { eights, in_use, approach, touching, losses, .. } = &mut *self.found;
         let eight = &mut eights[*in_use];
         *in_use += 1;
         eight.depth[count..].fill(0.0);
         if eight.has_friction {
             eight.carry(simd, approach, poses, since);
         }
-        eight.push::<S, FIRST>(simd, poses, touching);
+        eight.push::<S, FIRST>(simd, poses, touching, losses);
         if !FIRST {
             self.found.keep(self.found.in_use - 1, pairs);
         }
@@ -354,11 +369,11 @@ impl<'a> Search<'a> {
 
     /// Tells the lists what was found in a lane, and finds the spring that was there.
     #[inline(always)]
-    fn settle_lane(&mut self, lane: usize, pairs: &[Pair], points: &mut [Point]) {
+    fn settle_lane(&mut self, lane: usize, pairs: &mut [Pair], points: &mut [Point]) {
         let Found { eights, in_use, touching, number, approach, .. } = &mut *self.found;
         let eight = &mut eights[*in_use];
         let of_list = touching[eight.touching[lane] as usize].pair as usize;
-        let (pair, point) = (&pairs[of_list], &mut points[eight.point[lane] as usize]);
+        let (pair, point) = (&mut pairs[of_list], &mut points[eight.point[lane] as usize]);
         let (travel, way) = (self.asked.travel[lane], self.asked.way[lane]);
         approach.known[lane] = 0.0;
         if eight.depth[lane] > 0.0 {
@@ -373,6 +388,10 @@ impl<'a> Search<'a> {
         } else {
             point.quiet = travel - eight.depth[lane];
             eight.depth[lane] = 0.0;
+        }
+        // of a mesh the whole pair tells
+        if !pair.is_at_mesh() {
+            pair.quiet = pair.quiet.min(point.quiet);
         }
         if way > pair.limit && travel + way > point.quiet {
             self.found.warn(TooFast::of(self.moment.model, of_list, pair, point, way));
@@ -515,11 +534,7 @@ impl<'a> Sides<'a> {
             ContactKind::FirstInSecond => self.particles(*first).weight(particle as usize),
             ContactKind::SecondInFirst => self.particles(*second).weight(particle as usize),
         };
-        (into.radius[lane], into.other_radius[lane]) = match kind {
-            ContactKind::Wall | ContactKind::FirstInSecond => (pair.reach, 0.0),
-            ContactKind::SecondInFirst => (0.0, pair.reach),
-            ContactKind::Spheres => (self.radius(*first), self.radius(*second)),
-        };
+        [into.radius[lane], into.other_radius[lane]] = pair.radii;
         into.kind[lane] = f64::from(*kind as u8);
         into.stiffness[lane] = weight * law.stiffness;
         into.damping[lane] = weight * law.damping;
@@ -527,11 +542,7 @@ impl<'a> Sides<'a> {
         into.friction_spring[lane] = weight * law.friction_spring;
         into.friction_damping[lane] = weight * law.friction_damping;
         into.has_friction |= law.friction > 0.0;
-        into.has_belt |= self.first.belt != self.second.belt;
-    }
-
-    fn radius(&self, body: u32) -> f64 {
-        list::radius(&self.model.bodies[body as usize])
+        into.has_belt |= pair.has_belt;
     }
 
     fn particles(&self, body: u32) -> &Particles {

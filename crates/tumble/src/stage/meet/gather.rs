@@ -1,6 +1,6 @@
 //! What each body feels of all its contacts with others.
 
-use super::contact::PairForces;
+use super::contact::Losses;
 use super::find::{Found, NONE, Touching};
 use super::list::Lists;
 use super::pose::Pose;
@@ -26,26 +26,18 @@ pub(super) struct BodySum {
 
 impl BodySum {
     /// As first body of a pair.
-    fn add_first<const FIRST: bool>(&mut self, forces: &PairForces) {
-        self.all += forces.all.on_first();
-        if FIRST {
-            return;
-        }
-        self.dashpot += forces.dashpot.on_first();
-        self.slip += forces.slip;
-        self.belt_power += forces.belt_power;
-        self.belt_loss += forces.belt_loss;
-        self.max_depth = self.max_depth.max(forces.max_depth);
+    fn account_first(&mut self, losses: &Losses) {
+        self.dashpot += losses.dashpot.on_first();
+        self.slip += losses.slip;
+        self.belt_power += losses.belt_power;
+        self.belt_loss += losses.belt_loss;
+        self.max_depth = self.max_depth.max(losses.max_depth);
     }
 
     /// As second body of a pair.
-    fn add_second<const FIRST: bool>(&mut self, forces: &PairForces) {
-        self.all += forces.all.on_second();
-        if FIRST {
-            return;
-        }
-        self.dashpot += forces.dashpot.on_second();
-        self.max_depth = self.max_depth.max(forces.max_depth);
+    fn account_second(&mut self, losses: &Losses) {
+        self.dashpot += losses.dashpot.on_second();
+        self.max_depth = self.max_depth.max(losses.max_depth);
     }
 }
 
@@ -104,13 +96,14 @@ struct Sums<'a> {
     /// Of the bodies that are left.
     released: &'a [f64],
     touching: &'a [Touching],
+    losses: &'a [Losses],
 }
 
 impl<'a> Sums<'a> {
     /// Those of the chunk whose first body is number `body`.
     fn of_chunk(feelings: Feelings<'a>, body: usize) -> Self {
-        let Found { released, touching, .. } = &feelings.found[body / CHUNK];
-        Self { feelings, released, touching }
+        let Found { released, touching, losses, .. } = &feelings.found[body / CHUNK];
+        Self { feelings, released, touching, losses }
     }
 
     /// What the next body feels, number `index`: first the pairs that it is the first of, then those that it is the second of, in
@@ -124,16 +117,24 @@ impl<'a> Sums<'a> {
         while let Some((touching, rest)) = self.touching.split_first()
             && touching.first as usize == index
         {
-            sum.add_first::<FIRST>(&touching.forces);
+            sum.all += touching.forces.on_first();
             self.touching = rest;
+            if !FIRST && let Some((losses, rest)) = self.losses.split_first() {
+                sum.account_first(losses);
+                self.losses = rest;
+            }
         }
         let Feelings { found, lists } = self.feelings;
         let range = lists.starts[index] as usize..lists.starts[index + 1] as usize;
         for &(chunk, pair) in &lists.seconds[range] {
             let found = &found[chunk as usize];
             let number = found.number[pair as usize];
-            if number != NONE {
-                sum.add_second::<FIRST>(&found.touching[number as usize].forces);
+            if number == NONE {
+                continue;
+            }
+            sum.all += found.touching[number as usize].forces.on_second();
+            if !FIRST {
+                sum.account_second(&found.losses[number as usize]);
             }
         }
         sum

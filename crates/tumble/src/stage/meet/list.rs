@@ -19,7 +19,7 @@ const SKIN: f64 = 0.2;
 const GRAIN: f64 = 0.1;
 
 /// Two bodies, or a body and a wall, that may touch soon.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     pub first: u32,
     pub second: u32,
@@ -37,7 +37,11 @@ pub(super) struct Pair {
     pub margin: f64,
     /// How far one may come against the other in a step without passing through it (m).
     pub limit: f64,
+    /// The radii of the spheres that touch, of the first body and of the second; 0 where it is none (m).
+    pub radii: [f64; 2],
     pub law: ContactLaw,
+    /// Whether one of the bodies has a surface that moves along itself.
+    pub has_belt: bool,
 }
 
 impl Pair {
@@ -69,8 +73,6 @@ pub(super) struct Point {
 pub(super) struct Near {
     pub pairs: Vec<Pair>,
     pub points: Vec<Point>,
-    /// How often they have been listed.
-    pub made: u64,
     /// The last chunk that the second body of a pair is in, or its own.
     pub until: usize,
     pub known: Known,
@@ -133,7 +135,6 @@ impl Lists {
             std::mem::swap(&mut near.known, &mut near.old_known);
             near.pairs.clear();
             near.points.clear();
-            near.made += 1;
             near.known.clear();
             let first = (index * CHUNK) as u32;
             let until = (first + CHUNK as u32).min(bodies.len() as u32);
@@ -213,7 +214,9 @@ impl Near {
                 reach: radius,
                 margin: pose.skin,
                 limit: f64::INFINITY,
+                radii: [radius, 0.0],
                 law: *law,
+                has_belt: false,
             };
             self.add(pair);
         }
@@ -237,6 +240,12 @@ impl Near {
             // a mesh is asked farther out, so that it need not be asked again so soon
             let margin = (a.pose.skin + b.pose.skin).max(2.0 * grain(a.body).min(grain(b.body)));
             let limit = limit(a.body, b.body, kind);
+            let radii = match kind {
+                ContactKind::Spheres => [radius(a.body), radius(b.body)],
+                ContactKind::SecondInFirst => [0.0, reach],
+                ContactKind::Wall | ContactKind::FirstInSecond => [reach, 0.0],
+            };
+            let has_belt = [a, b].iter().any(|side| side.pose.belt != DVec3::ZERO);
             self.add(Pair {
                 first,
                 second,
@@ -248,7 +257,9 @@ impl Near {
                 reach,
                 margin,
                 limit,
+                radii,
                 law,
+                has_belt,
             });
         }
     }

@@ -21,7 +21,7 @@ use std::sync::Arc;
 use fearless_simd::{Level, Simd, dispatch};
 
 pub(crate) use self::find::TooFast;
-use self::find::{Found, Moment};
+use self::find::{ContactRoom, Found, Moment};
 pub(crate) use self::gather::Feelings;
 pub use self::gather::feel;
 pub(crate) use self::list::can_touch;
@@ -41,6 +41,10 @@ pub(crate) struct Meeting {
     lists: Lists,
     /// Contacts, one entry a chunk of bodies.
     found: Vec<Found>,
+    /// Room for contacts of chunks that are yet to be looked at.
+    room: Vec<ContactRoom>,
+    /// The tangential springs that go on after the latest push, if they are written down.
+    springs: Vec<PairSpring>,
 }
 
 /// Takes note of where the bodies are, and how far they have come. [`meet`] needs that of all bodies.
@@ -84,8 +88,13 @@ pub fn meet(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
 }
 
 /// Writes down the tangential springs that go on after the latest push.
-pub fn keep(state: &mut State, scratch: &Scratch) {
-    scratch.meeting.keep(&mut state.pair_springs);
+pub fn keep(state: &mut State, scratch: &mut Scratch) {
+    let Meeting { found, springs, .. } = &mut scratch.meeting;
+    for found in found {
+        springs.extend_from_slice(&found.springs);
+    }
+    std::mem::swap(&mut state.pair_springs, springs);
+    springs.clear();
 }
 
 impl Meeting {
@@ -116,12 +125,13 @@ impl Meeting {
 
     /// Where the bodies are, and what they feel of each other.
     pub fn parts(&mut self) -> (&mut [Pose], Feelings<'_>) {
-        let Self { poses, found, lists } = self;
+        let Self { poses, found, lists, .. } = self;
         (poses, Feelings { found, lists })
     }
 
     /// Finds what touches, and its forces. A first look is one at the velocities before the kick.
     fn find<const FIRST: bool>(&mut self, model: &Model, springs: &[PairSpring], since: f64) {
+        self.springs.clear();
         let moment = Moment { model, poses: &self.poses, springs, since };
         self.found.resize_with(self.lists.chunks.len(), Found::default);
         parallel::each_of_two(&mut self.found, &mut self.lists.chunks, |chunk, found, near| {
@@ -136,7 +146,7 @@ impl Meeting {
     }
 
     /// Finds what touches, foretells velocities and pushes with them, each chunk as soon as it can be: what belongs to its contacts is still
-    /// at hand then. No pair has its second body in an earlier chunk, so that what was foretold of a chunk changes nothing that
+    /// at hand then, and what they took up is at hand for the next. No pair has its second body in an earlier chunk, so that what was foretold of a chunk changes nothing that
     /// is found later.
     fn in_turn(
         &mut self,
@@ -146,11 +156,13 @@ impl Meeting {
         since: f64,
     ) {
         self.found.resize_with(self.lists.chunks.len(), Found::default);
+        self.springs.clear();
         let mut pushed = 0;
         for (chunk, others) in others.chunks(CHUNK).enumerate() {
             let moment = Moment { model, poses: &self.poses, springs, since };
-            let near = &mut self.lists.chunks[chunk];
-            find_chunk::<true>(&moment, chunk, &mut self.found[chunk], near);
+            let (near, found) = (&mut self.lists.chunks[chunk], &mut self.found[chunk]);
+            found.take_room(&mut self.room);
+            find_chunk::<true>(&moment, chunk, found, near);
             let feelings = Feelings { found: &self.found, lists: &self.lists };
             let first = chunk * CHUNK;
             let poses = &mut self.poses[first..first + others.len()];
@@ -158,7 +170,10 @@ impl Meeting {
             while let Some(near) = self.lists.chunks.get(pushed)
                 && near.until <= chunk
             {
-                push_chunk(&self.poses, &mut self.found[pushed], near);
+                let found = &mut self.found[pushed];
+                push_chunk(&self.poses, found, near);
+                self.springs.extend_from_slice(&found.springs);
+                self.room.push(found.give_room());
                 pushed += 1;
             }
         }
@@ -182,14 +197,6 @@ impl Meeting {
     /// The first two bodies that could pass through each other in a step.
     pub fn too_fast(&self) -> Option<TooFast> {
         self.found.iter().find_map(|found| found.too_fast)
-    }
-
-    /// The springs that go on after the latest push.
-    fn keep(&self, springs: &mut Vec<PairSpring>) {
-        springs.clear();
-        for found in &self.found {
-            springs.extend_from_slice(&found.springs);
-        }
     }
 }
 
