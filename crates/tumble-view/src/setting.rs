@@ -1,7 +1,7 @@
 //! Changing one key of a scene, and moving a state into the model that comes of it.
 
-use std::sync::Arc;
 use std::path::Path;
+use std::sync::Arc;
 
 use toml::{Table, Value};
 use tumble::{State, World};

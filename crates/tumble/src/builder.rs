@@ -510,12 +510,7 @@ fn check_material(
 /// Where a body starts; L = R I₀ Rᵀ ω.
 fn body_state(model: &BodyModel, name: &str, body: &Body) -> Result<BodyState, BuildError> {
     let refuse = |quantity, value: &dyn std::fmt::Display, allowed| {
-        Err(BuildError::Body {
-            body: name.to_owned(),
-            quantity,
-            value: value.to_string(),
-            allowed,
-        })
+        Err(BuildError::Body { body: name.to_owned(), quantity, value: value.to_string(), allowed })
     };
     let position = body.position.unwrap_or(body.shape.centre());
     let three = "three finite numbers";

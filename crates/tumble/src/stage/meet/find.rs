@@ -29,6 +29,8 @@ pub(super) struct Found {
     pub springs: Vec<PairSpring>,
     /// The first two bodies that could pass through each other in a step.
     pub too_fast: Option<TooFast>,
+    /// Room for points that may touch: which of `touching`, and which of the list.
+    asked: Vec<(u32, u32)>,
     /// Room for what eight of them are found from.
     approach: Approach,
 }
@@ -99,34 +101,22 @@ impl Found {
         let mut search = Search::new(self, moment, springs);
         let Near { pairs, points, known, .. } = near;
         for number in 0..pairs.len() {
-            let pair = pairs[number];
-            let sides = Sides::of(moment, &pair);
+            let pair = &pairs[number];
+            let sides = Sides::of(moment, pair);
             if sides.travel < pair.quiet && sides.way <= pair.limit {
                 continue;
             }
             search.number = number;
             if pair.is_at_mesh() {
+                search.look::<S, FIRST>(simd, pairs, points);
                 let lists = Listed { pairs, points, known };
                 pairs[number].quiet = search.ask_mesh::<S, FIRST>(simd, &sides, lists);
                 continue;
             }
-            search.begin::<FIRST>(&pair);
-            // of those that are asked, the lanes tell
-            let mut quiet = f64::INFINITY;
-            pairs[number].quiet = quiet;
-            for index in pair.start..pair.end {
-                let point = points[index as usize];
-                if sides.travel < point.quiet && !sides.passes(&pair, sides.travel, point.quiet) {
-                    quiet = quiet.min(point.quiet);
-                    continue;
-                }
-                let geometry = sides.geometry(&pair, &point);
-                if search.ask(&sides, &pair, index, geometry, &point) == LANES {
-                    search.settle::<S, FIRST>(simd, pairs, points);
-                }
-            }
-            pairs[number].quiet = pairs[number].quiet.min(quiet);
+            search.begin::<FIRST>(pair);
+            pairs[number].quiet = search.collect(pair, &sides, points);
         }
+        search.look::<S, FIRST>(simd, pairs, points);
         search.settle::<S, FIRST>(simd, pairs, points);
         search.springs.release_all();
         self.released = search.springs.released;
@@ -150,7 +140,9 @@ impl Found {
 
     /// Takes room that another chunk no longer needs, if it has none of its own.
     pub fn take_room(&mut self, room: &mut Vec<ContactRoom>) {
-        if self.eights.is_empty() && let Some(room) = room.pop() {
+        if self.eights.is_empty()
+            && let Some(room) = room.pop()
+        {
             (self.eights, self.springs) = room;
         }
     }
@@ -247,6 +239,49 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// Takes note of the points of two spheres, or of spheres and a wall, that may touch; returns until when the others are
+    /// quiet (m of travel). Without a branch for each point: none could be foretold.
+    #[inline(always)]
+    fn collect(&mut self, pair: &Pair, sides: &Sides, points: &[Point]) -> f64 {
+        let touching = self.found.touching.len() as u32 - 1;
+        let asked = &mut self.found.asked;
+        let mut count = asked.len();
+        let range = pair.start as usize..pair.end as usize;
+        asked.resize(count + range.len(), (0, 0));
+        let mut quiet = f64::INFINITY;
+        for (index, point) in (pair.start..).zip(&points[range]) {
+            let is_quiet =
+                sides.travel < point.quiet && !sides.passes(pair, sides.travel, point.quiet);
+            asked[count] = (touching, index);
+            count += usize::from(!is_quiet);
+            quiet = quiet.min(if is_quiet { point.quiet } else { f64::INFINITY });
+        }
+        asked.truncate(count);
+        quiet
+    }
+
+    /// Takes all points that were collected into lanes.
+    #[inline(always)]
+    fn look<S: Simd, const FIRST: bool>(
+        &mut self,
+        simd: S,
+        pairs: &mut [Pair],
+        points: &mut [Point],
+    ) {
+        let mut asked = std::mem::take(&mut self.found.asked);
+        for &(touching, index) in &asked {
+            let number = self.found.touching[touching as usize].pair as usize;
+            let (pair, point) = (&pairs[number], &points[index as usize]);
+            let sides = Sides::of(self.moment, pair);
+            let geometry = sides.geometry(pair, point);
+            if self.ask(&sides, pair, (touching, index), geometry, point) == LANES {
+                self.settle::<S, FIRST>(simd, pairs, points);
+            }
+        }
+        asked.clear();
+        self.found.asked = asked;
+    }
+
     /// Takes the particles of a body that touch the mesh of another into lanes; returns until when the pair is quiet (m of travel).
     #[inline(always)]
     fn ask_mesh<S: Simd, const FIRST: bool>(
@@ -263,6 +298,7 @@ impl<'a> Search<'a> {
             return sides.travel + (until - clock);
         }
         self.begin::<FIRST>(pair);
+        let touching = self.found.touching.len() as u32 - 1;
         let margin = if exact { pair.margin.max(sides.way) } else { pair.margin };
         let mut look = Look { pair, known, exact, margin };
         let mut quiet = f64::INFINITY;
@@ -277,7 +313,8 @@ impl<'a> Search<'a> {
                         match sides.touch_mesh(&mut look, point) {
                             Ok(touch) => {
                                 point.quiet = 0.0;
-                                is_full = self.ask(sides, pair, index, touch, point) == LANES;
+                                is_full =
+                                    self.ask(sides, pair, (touching, index), touch, point) == LANES;
                             }
                             Err(gap) => point.quiet = clock + gap,
                         }
@@ -310,12 +347,12 @@ impl<'a> Search<'a> {
         &mut self,
         sides: &Sides,
         pair: &Pair,
-        index: u32,
+        (touching, index): (u32, u32),
         geometry: Geometry,
         point: &Point,
     ) -> usize {
         let lane = self.count;
-        let Found { eights, in_use, touching, approach, .. } = &mut *self.found;
+        let Found { eights, in_use, approach, .. } = &mut *self.found;
         if eights.len() == *in_use {
             eights.push(Eight::default());
         }
@@ -323,7 +360,7 @@ impl<'a> Search<'a> {
         self.asked.travel[lane] = sides.travel;
         // meshes are watched by a clock of their own
         self.asked.way[lane] = if pair.is_at_mesh() { 0.0 } else { sides.way };
-        eight.touching[lane] = touching.len() as u32 - 1;
+        eight.touching[lane] = touching;
         eight.point[lane] = index;
         if lane == 0 {
             (eight.has_friction, eight.has_belt) = (false, false);

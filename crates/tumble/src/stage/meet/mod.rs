@@ -69,8 +69,9 @@ pub fn meet(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     }
     scratch.meeting.list(model, state);
     // spheres meet walls by another law
-    let is_damped =
-        |body: &Arc<BodyModel>| body.pair_material.is_damped() || (body.has_spheres() && body.is_damped);
+    let is_damped = |body: &Arc<BodyModel>| {
+        body.pair_material.is_damped() || (body.has_spheres() && body.is_damped)
+    };
     if model.integrator == Integrator::Splitting && model.bodies.iter().any(is_damped) {
         if parallel::is_alone() {
             scratch.meeting.in_turn(model, &state.pair_springs, &scratch.forces, h);
