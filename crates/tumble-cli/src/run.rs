@@ -178,7 +178,8 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
         ),
         ("", format!("{} J lost on the way", short(lost))),
         ("residual", format!("{} J{share}", short(s.energy_residual))),
-        ("deepest contact", format!("{} m", short(s.max_depth))),
+        ("deepest contact", format!("{} m on the way", short(s.max_depth))),
+        ("", depths_at_the_end(s)),
         ("results", folder.path().display().to_string()),
         ("look at it", folder.path().join("motion.html").display().to_string()),
     ];
@@ -186,6 +187,14 @@ fn report(finished: &Finished, folder: &RunFolder) -> String {
     let advice = advice(s, relative);
     rows.extend(advice.into_iter().map(|advice| ("beware", advice)));
     table(&rows)
+}
+
+fn depths_at_the_end(s: &Summary) -> String {
+    let walls = format!("{} m with a wall", short(s.wall_depth_end));
+    if s.bodies == 1 {
+        return format!("{walls} at the end");
+    }
+    format!("{} m between bodies, {walls} at the end", short(s.body_depth_end))
 }
 
 /// What a user should know before trusting the numbers.

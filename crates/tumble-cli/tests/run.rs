@@ -56,6 +56,8 @@ fn the_folder_holds_what_the_contract_says() {
         "energy_end",
         "energy_residual",
         "max_depth",
+        "body_depth_end",
+        "wall_depth_end",
         "state_hash",
     ];
     for key in keys {

@@ -1,12 +1,13 @@
 //! From a description to a world: every value is checked here, once.
 
+mod kinds;
 mod twins;
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
+use self::kinds::Kinds;
 use self::twins::Twins;
 use crate::surface::Solids;
 use crate::{
@@ -112,15 +113,6 @@ impl Body {
         self.motion = motion;
         self
     }
-
-    /// Whether all that is constant about it is the same of another.
-    fn is_like(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.shape, &other.shape)
-            && self.mass == other.mass
-            && self.material == other.material
-            && self.surface == other.surface
-            && self.motion == other.motion
-    }
 }
 
 /// What bodies share.
@@ -128,12 +120,8 @@ impl Body {
 struct Shared<'a> {
     solids: Solids,
     twins: Twins,
-    /// The latest bodies that are not alike, up to [`KINDS`].
-    kinds: VecDeque<(&'a Body, Arc<BodyModel>)>,
+    kinds: Kinds<'a>,
 }
-
-/// Bodies that are alike are mostly described one after the other, or as a mixture of a few kinds.
-const KINDS: usize = 16;
 
 /// A world as a user describes it; [`WorldBuilder::build`] checks it.
 #[derive(Clone, Debug)]
@@ -325,16 +313,13 @@ impl WorldBuilder {
         body: &'a Body,
         shared: &mut Shared<'a>,
     ) -> Result<(Arc<BodyModel>, BodyState), BuildError> {
-        let known = shared.kinds.iter().rev().find(|(kind, _)| kind.is_like(body));
-        let body_model = if let Some((_, body_model)) = known {
-            Arc::clone(body_model)
-        } else {
-            let made = Arc::new(self.body_model(name, body, shared)?);
-            if shared.kinds.len() == KINDS {
-                shared.kinds.pop_front();
+        let body_model = match shared.kinds.find(body) {
+            Some(known) => known,
+            None => {
+                let made = Arc::new(self.body_model(name, body, shared)?);
+                shared.kinds.keep(body, &made);
+                made
             }
-            shared.kinds.push_back((body, Arc::clone(&made)));
-            made
         };
         let body_state = body_state(&body_model, name, body)?;
         check_inside(model, &body_model, name, &body_state)?;

@@ -12,7 +12,7 @@
 //! - [`World`]: bodies of these shapes among walls. Build it, step it, read it.
 //! - [`step::step`]: the step, as a list of [`stage`]s. Start here to read the physics.
 //! - [`Model`], [`State`], [`Scratch`]: what is constant, what evolves, what may be forgotten.
-//! - [`Energy`]: where every joule is.
+//! - [`Energy`]: where every joule is. [`Depths`]: how deep contacts are.
 //!
 //! ```
 //! use tumble::{Body, DVec3, Shape, WallBox, World};
@@ -36,6 +36,7 @@
 
 mod batch;
 mod builder;
+mod depths;
 mod distance;
 mod energy;
 mod error;
@@ -60,6 +61,7 @@ mod world;
 
 pub use batch::{Batch, each_batch};
 pub use builder::{Body, WorldBuilder};
+pub use depths::Depths;
 pub use distance::{Nearest, SignedDistance, SurfaceError};
 pub use energy::Energy;
 pub use error::{BuildError, BuildErrors, StepError};

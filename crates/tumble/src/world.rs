@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::stage::{self, Pull};
 use crate::{
-    BodyForces, BodyModel, BodyState, Energy, Model, Scratch, State, StateError, StepError,
+    BodyForces, BodyModel, BodyState, Depths, Energy, Model, Scratch, State, StateError, StepError,
     WorldBuilder, Wrench, step::step,
 };
 
@@ -130,6 +130,11 @@ impl World {
     /// Zero before the first step, and for a body that touched nothing.
     pub fn contact_wrench(&self, index: usize) -> Wrench {
         self.scratch.forces.get(index).map_or_else(Wrench::default, BodyForces::contact)
+    }
+
+    /// How deep bodies are in each other and behind walls now.
+    pub fn depths(&self) -> Depths {
+        Depths::with(&self.model, &self.state, self.scratch.meeting.clone())
     }
 
     /// Where the energy is, or went.

@@ -189,7 +189,7 @@ fn summarise(
     (steps_here, clock): (u64, Duration),
     energy: &EnergyRow,
 ) -> Summary {
-    let steps = world.state().step;
+    let (steps, depths) = (world.state().step, world.depths());
     let seconds = clock.as_secs_f64();
     Summary {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -210,6 +210,8 @@ fn summarise(
         critical_dt: critical_dt(world.model()).map(|critical| critical.dt),
         force_evaluations: world.state().tally.evaluations,
         max_depth: world.state().tally.max_depth,
+        body_depth_end: depths.bodies,
+        wall_depth_end: depths.walls,
         state_hash: world.state().hash(),
     }
 }

@@ -40,8 +40,12 @@ pub struct Summary {
     pub critical_dt: Option<f64>,
     /// How often contact forces kicked a body.
     pub force_evaluations: u64,
-    /// Deepest contact (m).
+    /// Deepest contact of the whole run (m).
     pub max_depth: f64,
+    /// Deepest contact between two bodies at the end (m).
+    pub body_depth_end: f64,
+    /// Deepest contact with a wall at the end (m).
+    pub wall_depth_end: f64,
     /// Hash of the last state.
     pub state_hash: String,
 }

@@ -13,25 +13,27 @@ mod grid;
 mod list;
 mod mesh;
 mod pose;
+mod sides;
 mod springs;
 mod start;
 
 use std::sync::Arc;
 
 use fearless_simd::{Level, Simd, dispatch};
+use glam::DVec3;
 
 pub(crate) use self::find::TooFast;
 use self::find::{ContactRoom, Found, Moment};
 pub(crate) use self::gather::Feelings;
 pub use self::gather::feel;
 pub(crate) use self::list::can_touch;
-use self::list::{Lists, Near};
+use self::list::{Lists, Near, Pair};
 pub(crate) use self::pose::Pose;
 pub(crate) use self::start::{overlaps, push_apart};
 use crate::parallel::{self, CHUNK};
 use crate::{
-    Batch, BodyForces, BodyModel, BodyState, Integrator, Model, PairSpring, Scratch, State,
-    each_batch,
+    Batch, BodyForces, BodyModel, BodyState, ContactKind, Integrator, Model, PairSpring, Scratch,
+    State, each_batch,
 };
 
 /// Room for contacts between bodies. Dropping it between steps changes no result.
@@ -193,6 +195,32 @@ impl Meeting {
         self.place(model, state);
         self.find::<true>(model, &state.pair_springs, since);
         self.found.iter().map(Found::elastic_energy).sum()
+    }
+
+    /// Calls `visit` with the pair, the normal and the depth (m) of each contact of a state.
+    fn each_contact(
+        &mut self,
+        model: &Model,
+        state: &State,
+        mut visit: impl FnMut(&Pair, DVec3, f64),
+    ) {
+        self.place(model, state);
+        self.find::<true>(model, &[], 0.0);
+        for (found, near) in self.found.iter().zip(&self.lists.chunks) {
+            found.each_contact(near, &mut visit);
+        }
+    }
+
+    /// How deep the deepest contact between two bodies is (m), and that between a sphere and a wall; 0 where none touch.
+    pub fn depths(&mut self, model: &Model, state: &State) -> [f64; 2] {
+        let mut depths = [0.0f64; 2];
+        if model.meets {
+            self.each_contact(model, state, |pair, _, depth| {
+                let deepest = &mut depths[usize::from(pair.kind == ContactKind::Wall)];
+                *deepest = deepest.max(depth);
+            });
+        }
+        depths
     }
 
     /// The first two bodies that could pass through each other in a step.

@@ -37,11 +37,8 @@ pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<Overlap> {
 
 /// Those that contact finds.
 fn by_contact(model: &Model, state: &State) -> Vec<Overlap> {
-    let mut meeting = Meeting::default();
-    meeting.place(model, state);
-    meeting.find::<true>(model, &[], 0.0);
     let mut overlaps: Vec<Overlap> = Vec::new();
-    meeting.each_contact(|pair, _, depth| {
+    Meeting::default().each_contact(model, state, |pair, _, depth| {
         if pair.kind == ContactKind::Wall || depth <= DEEP * grain(model, pair) {
             return;
         }
@@ -68,11 +65,9 @@ pub(crate) fn push_apart(model: &Model, state: &mut State) -> bool {
     }
     let mut ways = vec![(DVec3::ZERO, 0.0); model.bodies.len()];
     for _ in 0..ROUNDS {
-        meeting.place(model, state);
-        meeting.find::<true>(model, &[], 0.0);
         ways.fill((DVec3::ZERO, 0.0));
         let mut is_free = true;
-        meeting.each_contact(|pair, normal, depth| {
+        meeting.each_contact(model, state, |pair, normal, depth| {
             let (a, b) = (pair.first as usize, pair.second as usize);
             let weight = |body: usize| model.bodies[body].pair_material.inverse_mass;
             let of_second = if pair.kind == ContactKind::Wall { 0.0 } else { weight(b) };
@@ -114,13 +109,4 @@ fn grain(model: &Model, pair: &Pair) -> f64 {
         return first;
     }
     first.min(list::grain(&model.bodies[pair.second as usize]))
-}
-
-impl Meeting {
-    /// Calls `visit` with the pair, the normal and the depth (m) of each contact.
-    fn each_contact(&self, mut visit: impl FnMut(&Pair, DVec3, f64)) {
-        for (found, near) in self.found.iter().zip(&self.lists.chunks) {
-            found.each_contact(near, &mut visit);
-        }
-    }
 }
