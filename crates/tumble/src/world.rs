@@ -134,12 +134,12 @@ impl World {
 
     /// How deep bodies are in each other and behind walls now.
     pub fn depths(&self) -> Depths {
-        Depths::with(&self.model, &self.state, self.scratch.meeting.clone())
+        Depths::with(&self.model, &self.state, self.scratch.meeting.for_a_look())
     }
 
     /// Where the energy is, or went.
     pub fn energy(&self) -> Energy {
-        Energy::with(&self.model, &self.state, self.scratch.meeting.clone())
+        Energy::with(&self.model, &self.state, self.scratch.meeting.for_a_look())
     }
 }
 

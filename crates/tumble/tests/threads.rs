@@ -4,8 +4,9 @@
 use std::sync::Arc;
 
 use tumble::{
-    Body, DQuat, DVec3, Damping, Integrator, MassModel, Material, Motion, Oscillation, Prescribed,
-    Primitive, Sampling, Shape, Surface, WallBox, World, WorldBuilder,
+    Body, DQuat, DVec3, Damping, Depths, Energy, Integrator, MassModel, Material, MaterialOverride,
+    Motion, Oscillation, Prescribed, Primitive, Sampling, Shape, Surface, WallBox, WallPlane,
+    World, WorldBuilder,
 };
 
 /// Small numbers that look random, the same every time.
@@ -156,5 +157,27 @@ fn a_heap_that_is_put_back_goes_on_to_the_same_bits() {
             assert_eq!(whole.state().hash(), again.state().hash(), "{integrator:?}");
             assert_eq!(whole.state(), again.state());
         }
+    }
+}
+
+/// On a floor without friction, whose contacts lie in lanes where others with friction have been.
+#[test]
+fn what_is_asked_of_a_state_does_not_depend_on_what_came_before() {
+    let slippery =
+        MaterialOverride { friction_stiffness: Some(0.0), ..MaterialOverride::default() };
+    let floor = WallPlane::new(DVec3::Y, 0.01).unwrap();
+    for (integrator, threads) in
+        [(Integrator::Splitting, 1), (Integrator::Splitting, 2), (Integrator::Euler, 2)]
+    {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut world = heap(integrator).wall_of(floor, slippery).build().unwrap();
+            for _ in 0..40 {
+                advance(&mut world, 40);
+                assert_eq!(world.energy(), Energy::of(world.model(), world.state()));
+                assert_eq!(world.depths(), Depths::of(world.model(), world.state()));
+            }
+            assert!(!world.state().pair_springs.is_empty() && world.depths().walls > 0.0);
+        });
     }
 }

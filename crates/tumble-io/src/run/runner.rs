@@ -209,7 +209,7 @@ fn summarise(
         energy_residual: energy.residual,
         critical_dt: critical_dt(world.model()).map(|critical| critical.dt),
         force_evaluations: world.state().tally.evaluations,
-        max_depth: world.state().tally.max_depth,
+        max_depth: world.state().tally.max_depth.max(depths.bodies).max(depths.walls),
         body_depth_end: depths.bodies,
         wall_depth_end: depths.walls,
         state_hash: world.state().hash(),

@@ -40,7 +40,7 @@ pub struct Summary {
     pub critical_dt: Option<f64>,
     /// How often contact forces kicked a body.
     pub force_evaluations: u64,
-    /// Deepest contact of the whole run (m).
+    /// Deepest contact of the whole run (m): of all evaluations of forces, and at the end.
     pub max_depth: f64,
     /// Deepest contact between two bodies at the end (m).
     pub body_depth_end: f64,

@@ -15,9 +15,12 @@ pub(super) struct Kinds<'a>(VecDeque<(&'a Body, Arc<BodyModel>)>);
 
 impl<'a> Kinds<'a> {
     /// What was made for a body like this one, if that is not long ago.
-    pub fn find(&self, body: &Body) -> Option<Arc<BodyModel>> {
-        let known = self.0.iter().rev().find(|(kind, _)| is_like(kind, body));
-        known.map(|(_, made)| Arc::clone(made))
+    pub fn find(&mut self, body: &Body) -> Option<Arc<BodyModel>> {
+        let known = self.0.iter().rposition(|(kind, _)| is_like(kind, body))?;
+        let kind = self.0.remove(known)?;
+        let made = Arc::clone(&kind.1);
+        self.0.push_back(kind);
+        Some(made)
     }
 
     /// Takes note of what was made for a body.
@@ -43,7 +46,7 @@ mod tests {
     use super::*;
     use crate::{DVec3, MaterialOverride, Motion, Prescribed, Primitive, Shape, Surface, World};
 
-    /// Bodies that differ in where they are, how they move and what they are called are alike; those that differ in anything else
+    /// Bodies that differ in where they are, how fast they start and what they are called are alike; those that differ in anything else
     /// are not, and get their own.
     #[test]
     fn alike_is_what_differs_in_its_start_alone() {

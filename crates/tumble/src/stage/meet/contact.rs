@@ -17,7 +17,7 @@ pub(super) struct Eight {
     pub count: usize,
     /// Which of the pairs that are near, as an index into [`Found::touching`](super::find::Found::touching).
     pub touching: [u32; LANES],
-    /// Which point of the list, or a number that none has.
+    /// Which point of the list.
     pub point: [u32; LANES],
     /// The bodies; for a wall as second body a number that no body has.
     pub first: [u32; LANES],
@@ -384,8 +384,13 @@ impl Eight {
     /// Energy in the springs of a contact (J).
     pub fn elastic_energy(&self, lane: usize) -> f64 {
         let (depth, stretch) = (self.depth[lane], vector(&self.stretch, lane));
-        0.5 * (self.stiffness[lane] * depth * depth
-            + self.friction_spring[lane] * stretch.length_squared())
+        let normal = self.stiffness[lane] * depth * depth;
+        // without friction nothing stretches, and nobody writes so
+        if self.friction[lane] > 0.0 {
+            0.5 * (normal + self.friction_spring[lane] * stretch.length_squared())
+        } else {
+            0.5 * normal
+        }
     }
 
     /// The lanes with a contact.

@@ -30,8 +30,8 @@ pub(super) struct Found {
     pub springs: Vec<PairSpring>,
     /// The first two bodies that could pass through each other in a step.
     pub too_fast: Option<TooFast>,
-    /// Room for points that may touch: which of `touching`, and which of the list.
-    asked: Vec<(u32, u32)>,
+    /// Room for points that may touch.
+    candidates: Vec<Candidate>,
     /// Room for what eight of them are found from.
     approach: Approach,
 }
@@ -56,6 +56,15 @@ pub(crate) struct TooFast {
     pub way: f64,
     /// How far it may (m).
     pub limit: f64,
+}
+
+/// A point that may touch.
+#[derive(Clone, Copy, Debug, Default)]
+struct Candidate {
+    /// Which of [`Found::touching`] its pair is.
+    touching: u32,
+    /// Which point of the list.
+    point: u32,
 }
 
 /// A pair whose points were looked at, and what its contacts do.
@@ -109,6 +118,7 @@ impl Found {
             }
             search.number = number;
             if pair.is_at_mesh() {
+                // springs are taken in the order of pairs: what was collected comes first
                 search.look::<S, FIRST>(simd, pairs, points);
                 let lists = Listed { pairs, points, known };
                 pairs[number].quiet = search.ask_mesh::<S, FIRST>(simd, &sides, lists);
@@ -202,9 +212,9 @@ struct Search<'a> {
     found: &'a mut Found,
     springs: OldSprings<'a>,
     /// What the lists have to know of those that are being looked at, and how many there are.
-    asked: Asked,
+    waiting: Waiting,
     count: usize,
-    /// The pair whose points are looked at.
+    /// The pair that the list is at.
     number: usize,
 }
 
@@ -217,7 +227,7 @@ struct Listed<'a> {
 
 /// What is known of the points in the lanes, besides what they are found from.
 #[derive(Default)]
-struct Asked {
+struct Waiting {
     /// How far both bodies have come together (m).
     travel: [f64; LANES],
     /// How far one may come against the other in a step (m).
@@ -226,7 +236,7 @@ struct Asked {
 
 impl<'a> Search<'a> {
     fn new(found: &'a mut Found, moment: &'a Moment<'a>, springs: OldSprings<'a>) -> Self {
-        Self { moment, found, springs, asked: Asked::default(), count: 0, number: 0 }
+        Self { moment, found, springs, waiting: Waiting::default(), count: 0, number: 0 }
     }
 
     /// Goes on to a pair.
@@ -245,19 +255,19 @@ impl<'a> Search<'a> {
     #[inline(always)]
     fn collect(&mut self, pair: &Pair, sides: &Sides, points: &[Point]) -> f64 {
         let touching = self.found.touching.len() as u32 - 1;
-        let asked = &mut self.found.asked;
-        let mut count = asked.len();
+        let candidates = &mut self.found.candidates;
+        let mut count = candidates.len();
         let range = pair.start as usize..pair.end as usize;
-        asked.resize(count + range.len(), (0, 0));
+        candidates.resize(count + range.len(), Candidate::default());
         let mut quiet = f64::INFINITY;
         for (index, point) in (pair.start..).zip(&points[range]) {
             let is_quiet =
                 sides.travel < point.quiet && !sides.passes(pair, sides.travel, point.quiet);
-            asked[count] = (touching, index);
+            candidates[count] = Candidate { touching, point: index };
             count += usize::from(!is_quiet);
             quiet = quiet.min(if is_quiet { point.quiet } else { f64::INFINITY });
         }
-        asked.truncate(count);
+        candidates.truncate(count);
         quiet
     }
 
@@ -269,18 +279,18 @@ impl<'a> Search<'a> {
         pairs: &mut [Pair],
         points: &mut [Point],
     ) {
-        let mut asked = std::mem::take(&mut self.found.asked);
-        for &(touching, index) in &asked {
-            let number = self.found.touching[touching as usize].pair as usize;
-            let (pair, point) = (&pairs[number], &points[index as usize]);
+        let mut candidates = std::mem::take(&mut self.found.candidates);
+        for &candidate in &candidates {
+            let number = self.found.touching[candidate.touching as usize].pair as usize;
+            let (pair, point) = (&pairs[number], &points[candidate.point as usize]);
             let sides = Sides::of(self.moment, pair);
             let geometry = sides.geometry(pair, point);
-            if self.ask(&sides, pair, (touching, index), geometry, point) == LANES {
+            if self.ask(&sides, pair, candidate, geometry, point) == LANES {
                 self.settle::<S, FIRST>(simd, pairs, points);
             }
         }
-        asked.clear();
-        self.found.asked = asked;
+        candidates.clear();
+        self.found.candidates = candidates;
     }
 
     /// Takes the particles of a body that touch the mesh of another into lanes; returns until when the pair is quiet (m of travel).
@@ -292,12 +302,13 @@ impl<'a> Search<'a> {
         lists: Listed,
     ) -> f64 {
         let Listed { pairs, points, known } = lists;
-        let pair = &pairs[self.number].clone();
+        let pair = &pairs[self.number];
         let exact = sides.way > pair.limit;
         let (clock, until) = known.time(pair.listing, &sides.view(pair), sides.travel);
         if clock < until && !exact {
             return sides.travel + (until - clock);
         }
+        let pair = &{ *pair };
         self.begin::<FIRST>(pair);
         let touching = self.found.touching.len() as u32 - 1;
         let margin = if exact { pair.margin.max(sides.way) } else { pair.margin };
@@ -314,8 +325,8 @@ impl<'a> Search<'a> {
                         match sides.touch_mesh(&mut look, point) {
                             Ok(touch) => {
                                 point.quiet = 0.0;
-                                is_full =
-                                    self.ask(sides, pair, (touching, index), touch, point) == LANES;
+                                let candidate = Candidate { touching, point: index };
+                                is_full = self.ask(sides, pair, candidate, touch, point) == LANES;
                             }
                             Err(gap) => point.quiet = clock + gap,
                         }
@@ -342,13 +353,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Takes a point of the latest pair, with its geometry, into the next lane; returns how many are in use.
+    /// Takes a point of a pair, with its geometry, into the next lane; returns how many are in use.
     #[inline(always)]
     fn ask(
         &mut self,
         sides: &Sides,
         pair: &Pair,
-        (touching, index): (u32, u32),
+        candidate: Candidate,
         geometry: Geometry,
         point: &Point,
     ) -> usize {
@@ -358,11 +369,11 @@ impl<'a> Search<'a> {
             eights.push(Eight::default());
         }
         let eight = &mut eights[*in_use];
-        self.asked.travel[lane] = sides.travel;
+        self.waiting.travel[lane] = sides.travel;
         // meshes are watched by a clock of their own
-        self.asked.way[lane] = if pair.is_at_mesh() { 0.0 } else { sides.way };
-        eight.touching[lane] = touching;
-        eight.point[lane] = index;
+        self.waiting.way[lane] = if pair.is_at_mesh() { 0.0 } else { sides.way };
+        eight.touching[lane] = candidate.touching;
+        eight.point[lane] = candidate.point;
         if lane == 0 {
             (eight.has_friction, eight.has_belt) = (false, false);
         }
@@ -412,7 +423,7 @@ impl<'a> Search<'a> {
         let eight = &mut eights[*in_use];
         let of_list = touching[eight.touching[lane] as usize].pair as usize;
         let (pair, point) = (&mut pairs[of_list], &mut points[eight.point[lane] as usize]);
-        let (travel, way) = (self.asked.travel[lane], self.asked.way[lane]);
+        let (travel, way) = (self.waiting.travel[lane], self.waiting.way[lane]);
         approach.known[lane] = 0.0;
         if eight.depth[lane] > 0.0 {
             point.quiet = 0.0;

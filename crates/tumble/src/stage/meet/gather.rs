@@ -103,6 +103,7 @@ impl<'a> Sums<'a> {
     /// Those of the chunk whose first body is number `body`.
     fn of_chunk(feelings: Feelings<'a>, body: usize) -> Self {
         let Found { released, touching, losses, .. } = &feelings.found[body / CHUNK];
+        debug_assert!(losses.is_empty() || losses.len() == touching.len());
         Self { feelings, released, touching, losses }
     }
 

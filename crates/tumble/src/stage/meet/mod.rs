@@ -45,7 +45,7 @@ pub(crate) struct Meeting {
     found: Vec<Found>,
     /// Room for contacts of chunks that are yet to be looked at.
     room: Vec<ContactRoom>,
-    /// The tangential springs that go on after the latest push, if they are written down.
+    /// The tangential springs that go on after the latest push, as far as chunks were pushed in turn; others stay with their chunks.
     springs: Vec<PairSpring>,
 }
 
@@ -90,7 +90,7 @@ pub fn meet(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
     }
 }
 
-/// Writes down the tangential springs that go on after the latest push.
+/// Writes down the tangential springs that go on after the latest push; to be called once after each [`meet`].
 pub fn keep(state: &mut State, scratch: &mut Scratch) {
     let Meeting { found, springs, .. } = &mut scratch.meeting;
     for found in found {
@@ -195,6 +195,11 @@ impl Meeting {
         self.place(model, state);
         self.find::<true>(model, &state.pair_springs, since);
         self.found.iter().map(Found::elastic_energy).sum()
+    }
+
+    /// For a look at a state: what is known of the bodies, without room for steps.
+    pub fn for_a_look(&self) -> Self {
+        Self { poses: self.poses.clone(), lists: self.lists.clone(), ..Self::default() }
     }
 
     /// Calls `visit` with the pair, the normal and the depth (m) of each contact of a state.
