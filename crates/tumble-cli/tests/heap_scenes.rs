@@ -92,7 +92,7 @@ fn a_heap_of_cats_stays_in_its_box() {
     assert!(deepest < 0.02, "deepest contact {deepest} m, of cats 0.2 m high");
     for place in ["body_depth_end", "wall_depth_end"] {
         let depth = summary[place].as_f64().unwrap();
-        assert!(depth > 0.0 && depth <= deepest, "{place}: {depth} m");
+        assert!((0.0..=deepest).contains(&depth), "{place}: {depth} m");
     }
     // those of the upper row lie on others: without contacts they would be on the floor
     let highest = ends(&track, "cat").map(|row| row[2]).fold(0.0, f64::max);
