@@ -82,7 +82,7 @@ fn the_sign_of_zero_and_the_smallest_numbers_survive() {
     let mut odd = checkpoint().clone();
     odd.state.bodies[0].position.x = -0.0;
     odd.state.bodies[0].velocity.y = f64::from_bits(1);
-    odd.state.tally.evaluations = u64::MAX;
+    odd.state.totals.evaluations = u64::MAX;
     let read = parse_checkpoint(&odd.to_bytes()).unwrap();
     assert_eq!(read.to_bytes(), odd.to_bytes());
     assert!(read.state.bodies[0].position.x.is_sign_negative());
@@ -91,10 +91,10 @@ fn the_sign_of_zero_and_the_smallest_numbers_survive() {
 /// Springs between bodies, which the scene does not have by itself.
 fn with_pair_springs() -> Checkpoint {
     let kinds = [
-        ContactKind::Wall,
-        ContactKind::Spheres,
-        ContactKind::FirstInSecond,
-        ContactKind::SecondInFirst,
+        ContactKind::SphereWall,
+        ContactKind::SphereSphere,
+        ContactKind::PointMesh,
+        ContactKind::MeshPoint,
     ];
     let mut own = checkpoint().clone();
     own.state.pair_springs = (0..)
@@ -108,7 +108,7 @@ fn with_pair_springs() -> Checkpoint {
             stretch: DVec3::new(1e-3, -0.0, f64::from(i)),
         })
         .collect();
-    own.state.tally.work = -12.5;
+    own.state.totals.work = -12.5;
     own
 }
 
@@ -123,11 +123,11 @@ fn springs_between_bodies_and_the_work_survive() {
 #[test]
 fn springs_of_no_kind_and_more_than_there_are_make_no_sense() {
     let bytes = with_pair_springs().to_bytes();
-    // from the end: checksum, tally, then the last spring
-    let tally = bytes.len() - 32 - 6 * 8;
-    let kind = tally - 41 + 8;
+    // from the end: checksum, totals, then the last spring
+    let totals = bytes.len() - 32 - 6 * 8;
+    let kind = totals - 41 + 8;
     assert_eq!(bytes[kind], 3);
-    let count = tally - 4 * 41 - 8;
+    let count = totals - 4 * 41 - 8;
     assert_eq!(bytes[count], 4);
     for (at, value) in [(kind, 4), (kind, 255), (count, 3), (count, 5), (count + 7, 255)] {
         let mut other = bytes.clone();

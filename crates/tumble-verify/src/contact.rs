@@ -111,7 +111,7 @@ fn bounce() -> Outcome {
             Some(tolerance) => format!("energy_tolerance = {tolerance:e}"),
             None => "fixed step".to_owned(),
         };
-        let cost = format!("{} force evaluations", world.state().tally.evaluations);
+        let cost = format!("{} force evaluations", world.state().totals.evaluations);
         let check = Check::error(format!("energy, relative, {setting}"), worst, energy, "");
         checks.push(check.remark(cost));
         // at the top v = 0, and around it v = −g (t − t_top)
@@ -180,7 +180,8 @@ fn cat() -> Outcome {
             tolerance.map_or("fixed step".to_owned(), |t| format!("energy_tolerance = {t}"));
         let check =
             Check::error(format!("energy over 60 s, relative, {setting}"), worst, bound, "");
-        checks.push(check.remark(format!("{} force evaluations", world.state().tally.evaluations)));
+        checks
+            .push(check.remark(format!("{} force evaluations", world.state().totals.evaluations)));
     }
     Ok(checks)
 }

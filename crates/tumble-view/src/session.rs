@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use tumble::{Pull, World};
+use tumble::{MouseSpring, World};
 use tumble_io::scene::{Loaded, Scene};
 
 use crate::command::{Command, Setting};
@@ -32,7 +32,7 @@ pub struct Session {
     owed: f64,
     baseline: f64,
     /// What is being pulled.
-    hand: Option<Pull>,
+    hand: Option<MouseSpring>,
     error: Option<String>,
     revision: u64,
 }
@@ -105,7 +105,7 @@ impl Session {
     /// What the total of the ledger is measured against (J): its value at t = 0, and what the person's hand
     /// has added since, by settings and by pulling.
     pub fn baseline(&self) -> f64 {
-        self.baseline + self.world.pulled()
+        self.baseline + self.world.mouse_work()
     }
 
     /// Carries out a command; the answer, if there is one, is the scene to be saved.
@@ -178,7 +178,7 @@ impl Session {
             let residual = self.world.energy().total() - self.baseline();
             self.baseline = world.energy().total() - residual;
             // a hand holds on, if what it holds is still there
-            self.hand = self.hand.filter(|&hand| world.pull(Some(hand)));
+            self.hand = self.hand.filter(|&hand| world.set_mouse_spring(Some(hand)));
             (self.scene, self.world, self.owed) = (scene, world, 0.0);
         } else if !self.pending.contains(&new.key) {
             self.pending.push(new.key.clone());
@@ -198,8 +198,8 @@ impl Session {
 
     /// A hand on a particle. Its work goes into the baseline, so that the residual stays the integrator's alone.
     fn grab(&mut self, body: usize, particle: usize, target: [f64; 3]) -> Result<(), String> {
-        let hand = Pull { body, particle, target: target.into() };
-        if !self.world.pull(Some(hand)) {
+        let hand = MouseSpring { body, particle, target: target.into() };
+        if !self.world.set_mouse_spring(Some(hand)) {
             return Err(format!("there is no particle {particle} of a body {body} to pull there"));
         }
         self.hand = Some(hand);
@@ -213,7 +213,7 @@ impl Session {
 
     fn release(&mut self) {
         self.hand = None;
-        self.world.pull(None);
+        self.world.set_mouse_spring(None);
     }
 
     /// Tells that so much time has passed while the motion was playing.

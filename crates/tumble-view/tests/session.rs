@@ -355,7 +355,7 @@ fn a_hand_pulls_a_body_and_its_work_is_accounted_for() {
     assert!((place - DVec3::new(-0.5, 0.6, 0.5)).length() < 0.1, "{place}");
     assert!(session.baseline() > before, "the work of the hand");
     let residual = session.world().energy().total() - session.baseline();
-    let in_play = session.world().energy().kinetic + session.world().pulled();
+    let in_play = session.world().energy().kinetic + session.world().mouse_work();
     assert!(residual.abs() < 0.02 * in_play, "{residual} {in_play}");
     // what is set holds on, what is reset lets go
     say(&mut session, "{\"type\":\"set\",\"key\":\"gravity.1\",\"value\":-1.62}").unwrap();

@@ -1,116 +1,106 @@
-//! Bodies next to each other, with all that belongs to them: what stages work on.
+//! Batches of bodies: what the stages of a step work on.
 //!
-//! A step goes through several stages with one batch before it takes the next: what belongs to these bodies stays at hand, and
-//! threads have to wait for each other only where bodies meet.
+//! A step takes one batch through several stages before it takes the next. The data of these bodies then stays in the
+//! cache, and threads synchronise only where bodies touch each other.
 
+use crate::contact::gather::ContactResults;
+use crate::contact::pose::BodyPose;
 use crate::parallel::{self, CHUNK};
-use crate::stage::{Feelings, Pose, Problem, Touching};
-use crate::{BodyForces, BodyState, FrictionSpring, Model, Scratch, State, Tally};
+use crate::workspace::Workspace;
+use crate::{BodyForces, BodyState, FrictionSpring, Model, RunTotals, Scratch, State};
 
-/// A run of bodies, and what is derived of them within a step.
+/// A range of consecutive bodies, with all data that belongs to them.
 #[derive(Debug)]
 pub struct Batch<'a> {
-    /// What is constant.
+    /// Everything that is constant during the run.
     pub model: &'a Model,
     /// Time at the beginning of the step (s).
     pub time: f64,
-    /// Which body is its first.
+    /// Index of the first body.
     pub first: usize,
-    /// The bodies.
+    /// States of the bodies.
     pub bodies: &'a mut [BodyState],
-    /// Their friction springs.
+    /// Friction springs at walls, one list a body.
     pub springs: &'a mut [Vec<FrictionSpring>],
-    /// Which of them may touch a wall or another body within the step.
-    pub near: &'a mut [bool],
-    /// Their forces.
+    /// Whether each body may touch a wall or another body within the step.
+    pub may_touch: &'a mut [bool],
+    /// Forces on the bodies.
     pub forces: &'a mut [BodyForces],
-    /// Their friction springs that go on from the latest evaluation.
-    pub next: &'a mut [Vec<FrictionSpring>],
-    /// Where they are, as others meet them; empty where that is not known.
-    pub(crate) poses: &'a mut [Pose],
-    /// One for each [`CHUNK`] of them.
-    pub(crate) rooms: &'a mut [Room],
-    /// What others do to them.
-    pub(crate) feelings: Feelings<'a>,
-}
-
-/// Room for one batch.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Room {
-    /// Particles of one body in contact, while they are looked at.
-    pub touching: Touching,
-    /// Friction springs of one body to go back to.
-    pub backup: Vec<FrictionSpring>,
-    /// What the batch adds to the tally.
-    pub tally: Tally,
-    /// The first body whose state cannot be trusted.
-    pub problem: Option<(usize, Problem)>,
+    /// Friction springs at walls after the latest evaluation, one list a body.
+    pub next_springs: &'a mut [Vec<FrictionSpring>],
+    /// Poses of the bodies for contact between bodies; empty before the first neighbour lists are built.
+    pub(crate) poses: &'a mut [BodyPose],
+    /// Buffers, one for each [`CHUNK`] of bodies.
+    pub(crate) workspaces: &'a mut [Workspace],
+    /// Results of contact between bodies.
+    pub(crate) contact_results: ContactResults<'a>,
 }
 
 impl Batch<'_> {
-    /// How many bodies there are.
+    /// Number of bodies.
     pub fn len(&self) -> usize {
         self.bodies.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no bodies.
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
     }
 
-    /// The tally that stages add to: of few bodies that of the run so far, of many one for this batch.
-    pub fn tally(&mut self) -> &mut Tally {
-        &mut self.rooms[0].tally
+    /// The totals that stages add to: those of the run where there is one batch, else those of this batch.
+    pub fn totals(&mut self) -> &mut RunTotals {
+        &mut self.workspaces[0].totals
     }
 
-    /// The bodies before `count`, and the others.
-    fn split(self, count: usize) -> (Self, Self) {
+    /// Splits off the bodies from the `count`-th on; `count` is a multiple of [`CHUNK`].
+    fn split_at(self, count: usize) -> (Self, Self) {
         let (bodies, other_bodies) = self.bodies.split_at_mut(count);
         let (springs, other_springs) = self.springs.split_at_mut(count);
-        let (near, other_near) = self.near.split_at_mut(count);
+        let (may_touch, other_may_touch) = self.may_touch.split_at_mut(count);
         let (forces, other_forces) = self.forces.split_at_mut(count);
-        let (next, other_next) = self.next.split_at_mut(count);
+        let (next_springs, other_next_springs) = self.next_springs.split_at_mut(count);
         let (poses, other_poses) = self.poses.split_at_mut(count.min(self.poses.len()));
-        let (rooms, other_rooms) = self.rooms.split_at_mut(count / CHUNK);
-        let here = Self { bodies, springs, near, forces, next, poses, rooms, ..self };
-        let there = Self {
-            first: here.first + count,
+        let (workspaces, other_workspaces) = self.workspaces.split_at_mut(count / CHUNK);
+        let head =
+            Self { bodies, springs, may_touch, forces, next_springs, poses, workspaces, ..self };
+        let tail = Self {
+            first: head.first + count,
             bodies: other_bodies,
             springs: other_springs,
-            near: other_near,
+            may_touch: other_may_touch,
             forces: other_forces,
-            next: other_next,
+            next_springs: other_next_springs,
             poses: other_poses,
-            rooms: other_rooms,
-            ..here
+            workspaces: other_workspaces,
+            ..head
         };
-        (here, there)
+        (head, tail)
     }
 
-    /// Hands batches of [`CHUNK`] bodies round.
-    fn in_parallel(self, stages: &(impl Fn(&mut Batch) + Sync)) {
+    /// Runs `stages` on each [`CHUNK`] of bodies, on all threads.
+    fn for_each_parallel(self, stages: &(impl Fn(&mut Batch) + Sync)) {
         let chunks = self.len().div_ceil(CHUNK);
         if chunks < 2 {
-            return self.alone(stages);
+            return self.for_each_sequential(stages);
         }
-        let (here, there) = self.split(chunks / 2 * CHUNK);
-        rayon::join(|| here.in_parallel(stages), || there.in_parallel(stages));
+        let (head, tail) = self.split_at(chunks / 2 * CHUNK);
+        rayon::join(|| head.for_each_parallel(stages), || tail.for_each_parallel(stages));
     }
 
-    /// Takes batches of [`CHUNK`] bodies one after the other.
-    fn alone(self, stages: &impl Fn(&mut Batch)) {
+    /// Runs `stages` on each [`CHUNK`] of bodies, one after the other.
+    fn for_each_sequential(self, stages: &impl Fn(&mut Batch)) {
         let mut rest = self;
         while rest.len() > CHUNK {
-            let (mut here, there) = rest.split(CHUNK);
-            stages(&mut here);
-            rest = there;
+            let (mut head, tail) = rest.split_at(CHUNK);
+            stages(&mut head);
+            rest = tail;
         }
         stages(&mut rest);
     }
 }
 
-/// Takes every batch of bodies through `stages`, on as many threads as there are, and adds up what they tally.
-pub fn each_batch(
+/// Runs `stages` on every batch of bodies, on all threads, and adds up the totals of the batches in their order.
+pub fn for_each_batch(
     model: &Model,
     state: &mut State,
     scratch: &mut Scratch,
@@ -119,36 +109,36 @@ pub fn each_batch(
     if state.bodies.is_empty() {
         return;
     }
-    scratch.fit(state.bodies.len());
-    let Scratch { near, forces, springs: next, rooms, meeting } = scratch;
-    // few bodies add to the tally itself
-    let is_small = rooms.len() < 2;
-    for room in &mut *rooms {
-        room.tally = if is_small { state.tally } else { Tally::default() };
+    scratch.resize(state.bodies.len());
+    let Scratch { may_touch, forces, springs: next_springs, workspaces, body_contacts } = scratch;
+    // a single batch adds to the totals of the run directly
+    let is_single = workspaces.len() < 2;
+    for workspace in &mut *workspaces {
+        workspace.totals = if is_single { state.totals } else { RunTotals::default() };
     }
-    let (poses, feelings) = meeting.parts();
+    let (poses, contact_results) = body_contacts.poses_and_results();
     let mut all = Batch {
         model,
         time: state.time,
         first: 0,
         bodies: &mut state.bodies,
         springs: &mut state.springs,
-        near,
+        may_touch,
         forces,
-        next,
+        next_springs,
         poses,
-        rooms,
-        feelings,
+        workspaces,
+        contact_results,
     };
-    if is_small {
+    if is_single {
         stages(&mut all);
-        state.tally = rooms[0].tally;
+        state.totals = workspaces[0].totals;
         return;
     }
-    if parallel::is_alone() {
-        all.alone(&stages)
+    if parallel::is_single_threaded() {
+        all.for_each_sequential(&stages)
     } else {
-        all.in_parallel(&stages)
+        all.for_each_parallel(&stages)
     }
-    rooms.iter().for_each(|room| state.tally += room.tally);
+    workspaces.iter().for_each(|workspace| state.totals += workspace.totals);
 }

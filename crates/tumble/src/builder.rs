@@ -242,8 +242,8 @@ impl WorldBuilder {
             integrator: self.integrator,
             energy_tolerance: self.energy_tolerance,
             walls: self.walls.iter().map(|(wall, _)| *wall).collect(),
-            gap: smallest_gap(&self.walls),
-            meets: self.bodies.iter().any(|body| body.surface != Surface::None),
+            wall_gap: smallest_gap(&self.walls),
+            has_body_contact: self.bodies.iter().any(|body| body.surface != Surface::None),
             bodies: Vec::with_capacity(self.bodies.len()),
             names: Vec::with_capacity(self.bodies.len()),
         };
@@ -261,8 +261,8 @@ impl WorldBuilder {
             }
         }
         errors.extend(same_names(&model));
-        if errors.is_empty() && model.meets && self.overlaps == Overlaps::Push {
-            crate::stage::push_apart(&model, &mut state);
+        if errors.is_empty() && model.has_body_contact && self.overlaps == Overlaps::Push {
+            crate::contact::initial_overlap::separate(&model, &mut state);
         }
         errors.extend(overlaps(&model, &state));
         errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && !self.force).map(
@@ -356,7 +356,7 @@ impl WorldBuilder {
                 ("particle_mass", mass, mass * body.shape.particles().len() as f64)
             }
         };
-        let solid = shared.solids.of(name, &body.shape, body.surface)?;
+        let signed_distance = shared.solids.of(name, &body.shape, body.surface)?;
         let inertia = body.shape.gyration() * mass;
         let inverse_inertia = body.shape.principal().inverse() * (1.0 / mass);
         let fits = inertia.is_finite() && inverse_inertia.is_finite();
@@ -403,7 +403,7 @@ impl WorldBuilder {
             is_damped: contacts.iter().any(ContactLaw::is_damped),
             contacts,
             surface: body.surface,
-            solid,
+            signed_distance,
             motion: body.motion,
         })
     }
@@ -425,7 +425,7 @@ fn extent(shape: &Shape, surface: Surface) -> f64 {
 /// Bodies that start in each other, deeper than contact alone could press them.
 fn overlaps(model: &Model, state: &State) -> Vec<BuildError> {
     let name = |index: u32| model.names[index as usize].clone();
-    let pairs = crate::stage::overlaps(model, state).into_iter();
+    let pairs = crate::contact::initial_overlap::overlaps(model, state).into_iter();
     pairs
         .map(|(first, second, depth)| BuildError::Overlap {
             first: name(first),

@@ -1,6 +1,7 @@
 //! The account of every joule.
 
-use crate::stage::{Meeting, Placed};
+use crate::contact::BodyContacts;
+use crate::kinematics::Kinematics;
 use crate::{Model, State};
 
 /// Where the energy of a run is, or went, at one moment (J).
@@ -25,29 +26,30 @@ pub struct Energy {
 impl Energy {
     /// The ledger of a state.
     pub fn of(model: &Model, state: &State) -> Self {
-        Self::with(model, state, Meeting::default())
+        Self::with(model, state, BodyContacts::default())
     }
 
-    /// As [`Energy::of`]; what `meeting` knows may spare some work.
-    pub(crate) fn with(model: &Model, state: &State, mut meeting: Meeting) -> Self {
+    /// As [`Energy::of`]; reuses the neighbour lists of `contacts`.
+    pub(crate) fn with(model: &Model, state: &State, mut contacts: BodyContacts) -> Self {
         let mut energy = Self {
-            drag: state.tally.drag,
-            dashpot: state.tally.dashpot,
-            slip: state.tally.slip,
-            work: state.tally.work,
+            drag: state.totals.drag,
+            dashpot: state.totals.dashpot,
+            slip: state.totals.slip,
+            work: state.totals.work,
             ..Self::default()
         };
         for (index, body) in model.bodies.iter().enumerate() {
             let s = &state.bodies[index];
-            let place = Placed::new(body, s);
+            let kinematics = Kinematics::new(body, s);
             if !body.is_free() {
                 continue;
             }
-            energy.kinetic += place.kinetic_energy(s.angular_momentum);
+            energy.kinetic += kinematics.kinetic_energy(s.angular_momentum);
             energy.gravitational -= body.mass * model.gravity.dot(s.position);
-            energy.elastic += place.elastic_energy(model, &state.springs[index]);
+            energy.elastic +=
+                crate::contact::wall::elastic_energy(model, &kinematics, &state.springs[index]);
         }
-        energy.elastic += meeting.elastic_energy(model, state);
+        energy.elastic += contacts.elastic_energy(model, state);
         energy
     }
 

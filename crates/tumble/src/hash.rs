@@ -8,7 +8,7 @@ impl State {
     /// The first 16 bytes of the SHA-256 of the state as little-endian numbers, in hexadecimal:
     /// step, time, then position, velocity, orientation (w, x, y, z) and its rest, angular momentum and
     /// energy owed of each
-    /// body with its friction springs, then the friction springs between bodies, then the tally (with its work unless that is
+    /// body with its friction springs, then the friction springs between bodies, then the totals (with its work unless that is
     /// zero). Two runs agree to the last bit when, and only when, their hashes do.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();
@@ -38,12 +38,12 @@ impl State {
             }
             stretch.to_array().into_iter().for_each(&mut put);
         }
-        let tally = &self.tally;
-        if tally.work != 0.0 {
-            put(tally.work);
+        let totals = &self.totals;
+        if totals.work != 0.0 {
+            put(totals.work);
         }
-        [tally.drag, tally.dashpot, tally.slip, tally.max_depth].into_iter().for_each(&mut put);
-        put(f64::from_bits(tally.evaluations));
+        [totals.drag, totals.dashpot, totals.slip, totals.max_depth].into_iter().for_each(&mut put);
+        put(f64::from_bits(totals.evaluations));
         hasher.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
 }

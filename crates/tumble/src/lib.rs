@@ -12,7 +12,7 @@
 //! - [`World`]: bodies of these shapes among walls. Build it, step it, read it.
 //! - [`step::step`]: the step, as a list of [`stage`]s. Start here to read the physics.
 //! - [`Model`], [`State`], [`Scratch`]: what is constant, what evolves, what may be forgotten.
-//! - [`Energy`]: where every joule is. [`Depths`]: how deep contacts are.
+//! - [`Energy`]: where every joule is. [`ContactDepths`]: how deep contacts are.
 //!
 //! ```
 //! use tumble::{Body, DVec3, Shape, WallBox, World};
@@ -36,17 +36,19 @@
 
 mod batch;
 mod builder;
+mod contact;
 mod depths;
 mod distance;
 mod energy;
 mod error;
 mod flight;
 mod hash;
+mod kinematics;
 mod lanes;
 mod material;
 mod model;
 mod motion;
-mod pair_law;
+mod pair_material;
 mod parallel;
 mod restore;
 mod scratch;
@@ -57,11 +59,13 @@ mod state;
 pub mod step;
 mod surface;
 mod wall;
+mod workspace;
 mod world;
+mod wrench;
 
-pub use batch::{Batch, each_batch};
+pub use batch::{Batch, for_each_batch};
 pub use builder::{Body, WorldBuilder};
-pub use depths::Depths;
+pub use depths::ContactDepths;
 pub use distance::{Nearest, SignedDistance, SurfaceError};
 pub use energy::Energy;
 pub use error::{BuildError, BuildErrors, StepError};
@@ -70,17 +74,18 @@ pub use glam::{DMat3, DQuat, DVec3};
 pub use material::{ContactLaw, Damping, Material, MaterialOverride, damping_ratio, restitution};
 pub use model::{BodyModel, Integrator, Model};
 pub use motion::{Motion, Oscillation, Prescribed};
-pub use pair_law::{PairDamping, PairMaterial};
+pub use pair_material::{PairDamping, PairMaterial};
 pub use restore::StateError;
-pub use scratch::{BodyForces, Scratch, Wrench};
+pub use scratch::Scratch;
 pub use shape::{
     AreaError, BallsError, Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties,
     Mesh, MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError,
     PrincipalAxes, SampleError, Sampling, Shape, ShapeError, ShellError, ball_integrals,
 };
 pub use stability::{CriticalStep, critical_dt};
-pub use stage::Pull;
-pub use state::{BodyState, ContactKind, FrictionSpring, PairSpring, State, Tally};
+pub use stage::MouseSpring;
+pub use state::{BodyState, ContactKind, FrictionSpring, PairSpring, RunTotals, State};
 pub use surface::{Overlaps, Surface};
 pub use wall::{WallBox, WallPlane};
 pub use world::{BodyView, World};
+pub use wrench::{BodyForces, Wrench};

@@ -47,9 +47,9 @@ pub struct Model {
     /// The walls; none is free space.
     pub walls: Vec<WallPlane>,
     /// The smallest distance between two walls that face each other (m).
-    pub gap: Option<f64>,
+    pub wall_gap: Option<f64>,
     /// Whether there is a body that others can meet.
-    pub meets: bool,
+    pub has_body_contact: bool,
     /// One entry a body; bodies that are alike share theirs, so that it is at hand when the next of them is looked at.
     pub bodies: Vec<Arc<BodyModel>>,
     /// The names of the bodies.
@@ -84,7 +84,7 @@ pub struct BodyModel {
     /// What other bodies meet of it.
     pub surface: Surface,
     /// The distance to its mesh, where that is its surface.
-    pub solid: Option<Arc<SignedDistance>>,
+    pub signed_distance: Option<Arc<SignedDistance>>,
     /// What moves it.
     pub motion: Motion,
 }
@@ -122,7 +122,7 @@ impl BodyModel {
     }
 
     /// No particle is farther from the centre of mass than this (m), whatever rounding does.
-    pub fn reach(&self) -> f64 {
+    pub fn bounding_radius(&self) -> f64 {
         self.shape.radius() * (1.0 + 1e-9)
     }
 

@@ -27,7 +27,7 @@ pub enum StateError {
         /// Name of the body; empty for a sum over all of them.
         body: String,
         /// The quantity: a field of [`BodyState`](crate::BodyState),
-        /// [`FrictionSpring`] or [`Tally`](crate::Tally).
+        /// [`FrictionSpring`] or [`RunTotals`](crate::RunTotals).
         quantity: &'static str,
     },
     /// A friction spring between bodies is of bodies, walls or particles that are not there or cannot touch so, or out of
@@ -115,13 +115,13 @@ impl State {
             fitting_springs(body, name, springs)?;
         }
         fitting_pair_springs(model, &self.pair_springs)?;
-        let tally = &self.tally;
+        let totals = &self.totals;
         let values = [
-            ("drag", tally.drag.is_finite()),
-            ("dashpot", tally.dashpot.is_finite()),
-            ("slip", tally.slip.is_finite()),
-            ("work", tally.work.is_finite()),
-            ("max_depth", tally.max_depth.is_finite()),
+            ("drag", totals.drag.is_finite()),
+            ("dashpot", totals.dashpot.is_finite()),
+            ("slip", totals.slip.is_finite()),
+            ("work", totals.work.is_finite()),
+            ("max_depth", totals.max_depth.is_finite()),
         ];
         possible("", &values)
     }
@@ -182,20 +182,20 @@ fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)>
         ((particle as usize) < particles.len()).then(|| particles.slot_of(particle))
     };
     let a = body(first)?;
-    let is_other = kind == ContactKind::Spheres || other == 0;
+    let is_other = kind == ContactKind::SphereSphere || other == 0;
     let (particle, other) = match kind {
-        ContactKind::Wall => {
+        ContactKind::SphereWall => {
             let there = a.has_spheres() && a.is_free() && (second as usize) < a.contacts.len();
             (slot(first, particle).filter(|_| there)?, 0)
         }
         _ => {
             let b = body(second).filter(|_| first < second)?;
-            if !crate::stage::can_touch(a, b, kind) {
+            if !crate::contact::can_touch(a, b, kind) {
                 return None;
             }
             match kind {
-                ContactKind::Spheres => (slot(first, particle)?, slot(second, other)?),
-                ContactKind::SecondInFirst => (slot(second, particle)?, 0),
+                ContactKind::SphereSphere => (slot(first, particle)?, slot(second, other)?),
+                ContactKind::MeshPoint => (slot(second, particle)?, 0),
                 _ => (slot(first, particle)?, 0),
             }
         }

@@ -62,7 +62,7 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
     };
     // two bodies alike, all particles of both in contact
     let law = body.pair_material.law(&body.pair_material);
-    let meets = if model.meets { 2.0 * per_mass * neighbours } else { 0.0 };
+    let meets = if model.has_body_contact { 2.0 * per_mass * neighbours } else { 0.0 };
     let between = |[normal, tangential]: [f64; 2]| meets * normal.max(tangential);
     let square = at_walls(&springs).max(between(springs(&law)));
     let half_rate = 0.5 * at_walls(&dashpots).max(between(dashpots(&law)));

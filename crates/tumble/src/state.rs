@@ -18,7 +18,7 @@ pub struct State {
     /// ([`PairSpring`]).
     pub pair_springs: Vec<PairSpring>,
     /// What the run has lost or met so far.
-    pub tally: Tally,
+    pub totals: RunTotals,
 }
 
 /// The state of one body.
@@ -83,9 +83,9 @@ pub struct PairSpring {
     pub second: u32,
     /// What touches what.
     pub kind: ContactKind,
-    /// Which particle touches: of `second` where the kind is [`ContactKind::SecondInFirst`], else of `first`.
+    /// Which particle touches: of `second` where the kind is [`ContactKind::MeshPoint`], else of `first`.
     pub particle: u32,
-    /// Which particle of `second` it touches, where the kind is [`ContactKind::Spheres`]; else 0.
+    /// Which particle of `second` it touches, where the kind is [`ContactKind::SphereSphere`]; else 0.
     pub other: u32,
     /// Its stretch at the latest kick (m), along the contact, world axes: how far the first body has come with respect to
     /// the second.
@@ -97,26 +97,26 @@ pub(crate) type PairOrder = (u32, bool, u32, ContactKind);
 
 /// The place of a pair among all pairs.
 pub(crate) fn pair_order(first: u32, second: u32, kind: ContactKind) -> PairOrder {
-    (first, kind != ContactKind::Wall, second, kind)
+    (first, kind != ContactKind::SphereWall, second, kind)
 }
 
 /// What touches what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum ContactKind {
-    /// A sphere of the first body a wall.
-    Wall,
-    /// A sphere or particle of the first body one of the second.
-    Spheres,
-    /// A sphere or particle of the first body the mesh of the second.
-    FirstInSecond,
-    /// A sphere or particle of the second body the mesh of the first.
-    SecondInFirst,
+    /// A sphere of the first body and a wall.
+    SphereWall,
+    /// A sphere or particle of the first body and one of the second.
+    SphereSphere,
+    /// A sphere or particle of the first body and the mesh of the second.
+    PointMesh,
+    /// The mesh of the first body and a sphere or particle of the second.
+    MeshPoint,
 }
 
 /// Sums and extremes over the steps taken so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tally {
+pub struct RunTotals {
     /// Energy lost to the drag of the medium (J).
     pub drag: f64,
     /// Energy lost to the dashpots of contacts (J).
@@ -131,14 +131,14 @@ pub struct Tally {
     pub evaluations: u64,
 }
 
-impl Tally {
+impl RunTotals {
     /// Everything that was lost (J).
     pub fn lost(&self) -> f64 {
         self.drag + self.dashpot + self.slip
     }
 }
 
-impl std::ops::AddAssign for Tally {
+impl std::ops::AddAssign for RunTotals {
     fn add_assign(&mut self, more: Self) {
         self.drag += more.drag;
         self.dashpot += more.dashpot;

@@ -1,88 +1,62 @@
-//! The step, as a list of stages.
+//! The time step, as a list of stages.
 
-use crate::{Batch, Integrator, Model, Scratch, State, StepError, each_batch, parallel, stage};
+use crate::stage::{self, around_body_contact};
+use crate::{Batch, Integrator, Model, Scratch, State, StepError, for_each_batch, parallel};
 
-/// Advances `state` by one step of `model.dt`.
-///
-/// The numbers are the lines of the basic system in `docs/theory.md`; line 1, the mass properties, is
-/// done once per shape.
-///
-/// # Errors
-/// [`StepError`] when the new state cannot be trusted.
+/// Advances `state` by one step of `model.dt`, or returns a [`StepError`] when the new state fails a check.
 pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(), StepError> {
-    parallel::run(model.bodies.len(), || stages(model, state, scratch))
+    parallel::run(model.bodies.len(), || {
+        match (model.integrator, model.energy_tolerance) {
+            (Integrator::Splitting, None) => drift_kick_drift(model, state, scratch),
+            (Integrator::Splitting, Some(tolerance)) => adaptive(model, state, scratch, tolerance),
+            (Integrator::Euler, _) => explicit_euler(model, state, scratch),
+        }
+        state.step += 1;
+        state.time = state.step as f64 * model.dt;
+        stage::report_failure(model, state, scratch)
+    })
 }
 
-fn stages(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(), StepError> {
+/// Strang splitting: exact flight for h/2, a kick by the contact forces at that position, exact flight for h/2.
+fn drift_kick_drift(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let h = model.dt;
-    match (model.integrator, model.energy_tolerance) {
-        (Integrator::Splitting, None) => {
-            let push = |batch: &mut Batch| {
-                stage::reach(batch, h);
-                stage::cruise(batch, h);
-                stage::fly(batch, 0.5 * h);
-                stage::carry(batch, 0.0, 0.5 * h);
-                stage::contact(batch, h);
-            };
-            let go_on = |batch: &mut Batch| {
-                stage::kick(batch, h);
-                stage::fly(batch, 0.5 * h);
-                stage::carry(batch, 0.5 * h, h);
-                stage::check(batch);
-            };
-            around_meeting(model, state, scratch, push, go_on);
-        }
-        (Integrator::Splitting, Some(tolerance)) => {
-            each_batch(model, state, scratch, |batch| {
-                stage::reach(batch, h);
-                stage::cruise(batch, h);
-                stage::refine(batch, tolerance); // the rest of the above, in parts
-                stage::carry(batch, 0.0, h);
-                stage::check(batch);
-            });
-        }
-        (Integrator::Euler, _) => {
-            let push = |batch: &mut Batch| {
-                stage::gravity(batch); // 2
-                stage::drag(batch); // 8
-                stage::reach(batch, 0.0);
-                stage::contact(batch, 0.0); // 9, with 3 and 4
-            };
-            let go_on = |batch: &mut Batch| {
-                stage::euler(batch); // 5 to 7
-                stage::carry(batch, 0.0, h);
-                stage::check(batch);
-            };
-            around_meeting(model, state, scratch, push, go_on);
-        }
-    }
-    state.step += 1;
-    state.time = state.step as f64 * model.dt;
-    stage::refuse(model, state, scratch)
+    let before = |batch: &mut Batch| {
+        stage::find_free_flight(batch, h);
+        stage::drift_free_flight(batch, h); // nothing within reach: the whole step at once
+        stage::drift(batch, 0.5 * h);
+        stage::move_kinematic(batch, 0.0, 0.5 * h);
+        stage::wall_contact(batch, h);
+    };
+    around_body_contact(model, state, scratch, before, |batch| {
+        stage::kick(batch, h);
+        stage::drift(batch, 0.5 * h);
+        stage::move_kinematic(batch, 0.5 * h, h);
+        stage::check(batch);
+    });
 }
 
-/// What batches do by themselves before and after bodies meet; where none can meet, at once.
-fn around_meeting(
-    model: &Model,
-    state: &mut State,
-    scratch: &mut Scratch,
-    before: impl Fn(&mut Batch) + Sync,
-    after: impl Fn(&mut Batch) + Sync,
-) {
-    if !model.meets {
-        return each_batch(model, state, scratch, |batch| {
-            before(batch);
-            after(batch);
-        });
-    }
-    each_batch(model, state, scratch, |batch| {
-        before(batch);
-        stage::arrive(batch);
+/// The same in sub-steps that bound the energy error, for bodies that touch walls only.
+fn adaptive(model: &Model, state: &mut State, scratch: &mut Scratch, tolerance: f64) {
+    for_each_batch(model, state, scratch, |batch| {
+        stage::find_free_flight(batch, model.dt);
+        stage::drift_free_flight(batch, model.dt);
+        stage::substep(batch, tolerance);
+        stage::move_kinematic(batch, 0.0, model.dt);
+        stage::check(batch);
     });
-    stage::meet(model, state, scratch, model.dt);
-    each_batch(model, state, scratch, |batch| {
-        stage::feel(batch);
-        after(batch);
+}
+
+/// The basic system. Numbers are its lines in `docs/theory.md`; line 1, mass properties, is done once a shape.
+fn explicit_euler(model: &Model, state: &mut State, scratch: &mut Scratch) {
+    let before = |batch: &mut Batch| {
+        stage::gravity(batch); // 2
+        stage::drag(batch); // 8
+        stage::find_free_flight(batch, 0.0);
+        stage::wall_contact(batch, 0.0); // 9: wall springs; 3 and 4: their force and torque
+    };
+    around_body_contact(model, state, scratch, before, |batch| {
+        stage::euler(batch); // 5: velocity, position; 6: quaternion; 7: angular momentum, inertia
+        stage::move_kinematic(batch, 0.0, model.dt);
+        stage::check(batch);
     });
-    stage::keep(state, scratch);
 }

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::stage::{self, Pull};
+use crate::stage::{self, MouseSpring};
 use crate::{
-    BodyForces, BodyModel, BodyState, Depths, Energy, Model, Scratch, State, StateError, StepError,
-    WorldBuilder, Wrench, step::step,
+    BodyForces, BodyModel, BodyState, ContactDepths, Energy, Model, Scratch, State, StateError,
+    StepError, WorldBuilder, Wrench, step::step,
 };
 
 /// A model and its state, and the means to advance it.
@@ -17,8 +17,8 @@ pub struct World {
     state: State,
     scratch: Scratch,
     /// A hand on a particle; not part of the state, since nothing in the world says where it goes.
-    pull: Option<Pull>,
-    pulled: f64,
+    mouse_spring: Option<MouseSpring>,
+    mouse_work: f64,
 }
 
 impl World {
@@ -28,7 +28,7 @@ impl World {
     }
 
     pub(crate) fn of(model: Model, state: State) -> Self {
-        Self { model, state, scratch: Scratch::default(), pull: None, pulled: 0.0 }
+        Self { model, state, scratch: Scratch::default(), mouse_spring: None, mouse_work: 0.0 }
     }
 
     /// Advances time by one step of [`World::dt`].
@@ -36,46 +36,46 @@ impl World {
     /// # Errors
     /// [`StepError`] when the new state cannot be trusted; the world then keeps it, for inspection.
     pub fn step(&mut self) -> Result<(), StepError> {
-        let Some(hand) = self.pull else {
+        let Some(hand) = self.mouse_spring else {
             return step(&self.model, &mut self.state, &mut self.scratch);
         };
         // half of the pull before and half after
         let h = 0.5 * self.model.dt;
-        self.pulled += stage::pull(&self.model, &mut self.state, &hand, h);
+        self.mouse_work += stage::apply_mouse_spring(&self.model, &mut self.state, &hand, h);
         step(&self.model, &mut self.state, &mut self.scratch)?;
-        self.pulled += stage::pull(&self.model, &mut self.state, &hand, h);
+        self.mouse_work += stage::apply_mouse_spring(&self.model, &mut self.state, &hand, h);
         Ok(())
     }
 
     /// Pulls a particle towards a place from the next step on, or lets go. Returns whether there is such a
     /// particle of a body that can be moved, and such a place; if not, nothing changes.
-    pub fn pull(&mut self, hand: Option<Pull>) -> bool {
-        let fits = hand.is_none_or(|Pull { body, particle, target }| {
+    pub fn set_mouse_spring(&mut self, hand: Option<MouseSpring>) -> bool {
+        let fits = hand.is_none_or(|MouseSpring { body, particle, target }| {
             let body = self.model.bodies.get(body);
             let there =
                 |body: &Arc<BodyModel>| body.is_free() && particle < body.shape.particles().len();
             body.is_some_and(there) && target.is_finite()
         });
         if fits {
-            self.pull = hand;
+            self.mouse_spring = hand;
         }
         fits
     }
 
     /// The work of all pulls so far (J): what [`World::energy`] has gained by them.
-    pub fn pulled(&self) -> f64 {
-        self.pulled
+    pub fn mouse_work(&self) -> f64 {
+        self.mouse_work
     }
 
     /// Goes on from `state`, as a checkpoint holds it: every step from here on gives the bits that it
-    /// gave when the state was taken. A hand lets go, and [`World::pulled`] begins anew.
+    /// gave when the state was taken. A hand lets go, and [`World::mouse_work`] begins anew.
     ///
     /// # Errors
     /// [`StateError`] when the state is not one of this model; the world then keeps its own.
     pub fn restore(&mut self, state: State) -> Result<(), StateError> {
         state.fits(&self.model)?;
         (self.state, self.scratch) = (state, Scratch::default());
-        (self.pull, self.pulled) = (None, 0.0);
+        (self.mouse_spring, self.mouse_work) = (None, 0.0);
         Ok(())
     }
 
@@ -133,13 +133,13 @@ impl World {
     }
 
     /// How deep bodies are in each other and behind walls now.
-    pub fn depths(&self) -> Depths {
-        Depths::with(&self.model, &self.state, self.scratch.meeting.for_a_look())
+    pub fn contact_depths(&self) -> ContactDepths {
+        ContactDepths::with(&self.model, &self.state, self.scratch.body_contacts.for_query())
     }
 
     /// Where the energy is, or went.
     pub fn energy(&self) -> Energy {
-        Energy::with(&self.model, &self.state, self.scratch.meeting.for_a_look())
+        Energy::with(&self.model, &self.state, self.scratch.body_contacts.for_query())
     }
 }
 

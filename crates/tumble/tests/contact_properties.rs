@@ -256,10 +256,10 @@ proptest! {
             prop_assert_eq!(spring.anchor * units.length, scaled.anchor);
         }
         prop_assert_eq!(a.springs[0].len(), b.springs[0].len());
-        prop_assert_eq!(a.tally.dashpot * units.energy(), b.tally.dashpot);
-        prop_assert_eq!(a.tally.slip * units.energy(), b.tally.slip);
-        prop_assert_eq!(a.tally.drag * units.energy(), b.tally.drag);
-        prop_assert_eq!(a.tally.max_depth * units.length, b.tally.max_depth);
+        prop_assert_eq!(a.totals.dashpot * units.energy(), b.totals.dashpot);
+        prop_assert_eq!(a.totals.slip * units.energy(), b.totals.slip);
+        prop_assert_eq!(a.totals.drag * units.energy(), b.totals.drag);
+        prop_assert_eq!(a.totals.max_depth * units.length, b.totals.max_depth);
     }
 
     #[test]

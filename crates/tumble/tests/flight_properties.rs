@@ -3,16 +3,16 @@
 
 use proptest::prelude::*;
 use tumble::{
-    Body, BodyState, DMat3, DQuat, DVec3, Mesh, Model, Scratch, Shape, State, World, each_batch,
-    stage,
+    Body, BodyState, DMat3, DQuat, DVec3, Mesh, Model, Scratch, Shape, State, World,
+    for_each_batch, stage,
 };
 
 /// One flight of bodies that may be near a wall for the time `h` (s).
 fn fly_step(model: &Model, state: &mut State, h: f64) {
     let mut scratch = Scratch::default();
-    each_batch(model, state, &mut scratch, |batch| {
-        batch.near.fill(true);
-        stage::fly(batch, h);
+    for_each_batch(model, state, &mut scratch, |batch| {
+        batch.may_touch.fill(true);
+        stage::drift(batch, h);
     });
 }
 
@@ -283,7 +283,7 @@ proptest! {
             // what rounding left along an axis without inertia may come back as such
             let dust = 1e-30 * start;
             prop_assert!(after <= before * (1.0 + 1e-14) + dust, "kinetic energy rose: {before} {after}");
-            let unaccounted = (after + state.tally.drag) / start - 1.0;
+            let unaccounted = (after + state.totals.drag) / start - 1.0;
             prop_assert!(unaccounted.abs() < 1e-13, "unaccounted: {unaccounted:e}");
         }
     }

@@ -81,7 +81,7 @@ fn momentum_and_angular_momentum_are_conserved_to_rounding() {
             world.step().unwrap();
         }
         let (p_end, l_end) = momenta(&world);
-        assert!(world.state().tally.max_depth > 1e-4, "{surface:?}: they missed each other");
+        assert!(world.state().totals.max_depth > 1e-4, "{surface:?}: they missed each other");
         assert!((p_end - p).length() < 1e-12, "{surface:?} {}", (p_end - p).length());
         assert!((l_end - l).length() < 1e-12, "{surface:?} {}", (l_end - l).length());
     }
@@ -114,7 +114,7 @@ fn forgetting_the_scratch_changes_no_bit() {
         forgotten.forget_scratch();
         forgotten.step().unwrap();
     }
-    assert!(kept.state().tally.max_depth > 0.0);
+    assert!(kept.state().totals.max_depth > 0.0);
     assert_eq!(kept.state().hash(), forgotten.state().hash());
 }
 
@@ -203,7 +203,7 @@ fn a_static_box_is_a_wall() {
             while world.time() < 0.6 {
                 world.step().unwrap();
             }
-            assert!(world.state().tally.max_depth > 1e-3);
+            assert!(world.state().totals.max_depth > 1e-3);
             (world.body(0).position(), world.body(0).velocity())
         };
         let ((x, v), (y, u)) = (fall(true), fall(false));

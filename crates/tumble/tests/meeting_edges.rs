@@ -102,7 +102,7 @@ fn a_step_with_forgotten_lists_finds_the_same_contacts_down_to_rounding() {
             forgetful.step().unwrap();
         }
         assert_eq!(kept.state().hash(), forgetful.state().hash(), "{seed}");
-        touched += u32::from(kept.state().tally.max_depth > 0.0);
+        touched += u32::from(kept.state().totals.max_depth > 0.0);
     }
     assert!(touched > 300, "{touched}");
 }
@@ -234,7 +234,7 @@ fn points_needles_and_unequal_masses_keep_their_momenta() {
                 .unwrap();
             let before = momenta(&world);
             let start = world.energy().total();
-            let depth = |world: &World| world.state().tally.max_depth;
+            let depth = |world: &World| world.state().totals.max_depth;
             let result = (0..50_000).try_for_each(|_| world.step());
             assert!(depth(&world) > 0.0);
             match result {
@@ -283,7 +283,7 @@ fn units_that_are_powers_of_two_change_no_bit() {
     let mut plain = collision(1.0, 1.0, 1.0);
     let steps = 6000;
     (0..steps).for_each(|_| plain.step().unwrap());
-    assert!(plain.state().tally.max_depth > 1e-3 && plain.state().tally.slip > 0.0);
+    assert!(plain.state().totals.max_depth > 1e-3 && plain.state().totals.slip > 0.0);
     let big = 1048576.0;
     for (length, mass, time) in
         [(1.0, big, 1.0), (big, 1.0, big), (1.0 / big, 1.0 / big, 1.0 / 1024.0)]
@@ -295,7 +295,7 @@ fn units_that_are_powers_of_two_change_no_bit() {
             assert_eq!(a.velocity * (length / time), b.velocity);
             assert_eq!(a.orientation, b.orientation);
         }
-        let (a, b) = (plain.state().tally, scaled.state().tally);
+        let (a, b) = (plain.state().totals, scaled.state().totals);
         assert_eq!(a.slip * (mass * length * length / time / time), b.slip);
         assert_eq!(a.max_depth * length, b.max_depth);
     }
@@ -397,7 +397,7 @@ fn a_body_too_fast_names_both_and_a_step_that_does() {
         while world.time() < end {
             world.step().unwrap();
         }
-        assert!(world.state().tally.max_depth > 0.0, "{told}: passed through");
+        assert!(world.state().totals.max_depth > 0.0, "{told}: passed through");
     }
 }
 
@@ -442,7 +442,7 @@ fn a_held_body_may_come_first_or_second() {
         advance(&mut world, 0.6);
         let body = world.body(usize::from(first));
         assert_eq!(body.name(), "faller");
-        (body.position(), body.velocity(), world.state().tally)
+        (body.position(), body.velocity(), world.state().totals)
     };
     for integrator in [Integrator::Splitting, Integrator::Euler] {
         for surface in [Surface::Mesh, spheres(0.05), Surface::None] {
@@ -567,7 +567,7 @@ fn the_order_of_bodies_does_not_matter() {
         while world.time() < 0.3 {
             world.step().unwrap();
         }
-        assert!(world.state().tally.max_depth > 0.0);
+        assert!(world.state().totals.max_depth > 0.0);
         world.bodies().find(|body| body.name() == "ball").map(|body| body.velocity()).unwrap()
     };
     let apart = (throw(false) - throw(true)).length();

@@ -5,7 +5,7 @@
 use std::f64::consts::TAU;
 
 use tumble::{
-    Body, DVec3, Integrator, Motion, Oscillation, Prescribed, Pull, Shape, WallPlane, World,
+    Body, DVec3, Integrator, Motion, MouseSpring, Oscillation, Prescribed, Shape, WallPlane, World,
 };
 
 #[test]
@@ -51,7 +51,11 @@ fn what_is_held_ignores_walls_weight_and_hands_also_where_nothing_meets_it() {
                 .build()
                 .unwrap();
             let start = world.energy().total();
-            assert!(!world.pull(Some(Pull { body: 0, particle: 0, target: DVec3::ONE })));
+            assert!(!world.set_mouse_spring(Some(MouseSpring {
+                body: 0,
+                particle: 0,
+                target: DVec3::ONE
+            })));
             for _ in 0..500 {
                 world.step().unwrap();
             }

@@ -1,7 +1,7 @@
 //! A hand that drags a body about.
 #![allow(clippy::unwrap_used)]
 
-use tumble::{Body, DVec3, Pull, Shape, World};
+use tumble::{Body, DVec3, MouseSpring, Shape, World};
 
 fn world(dt: f64, gravity: f64) -> World {
     let places = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO, DVec3::new(-1.0, 0.3, 0.2)];
@@ -16,12 +16,16 @@ fn the_work_of_the_hand_is_what_the_energy_gains() {
     let start = world.energy().total();
     for step in 0..2000 {
         let target = DVec3::new(f64::from(step) * 1e-3, 1.0, 0.5);
-        assert!(world.pull(Some(Pull { body: 0, particle: 1, target })));
+        assert!(world.set_mouse_spring(Some(MouseSpring { body: 0, particle: 1, target })));
         world.step().unwrap();
     }
     let gained = world.energy().total() - start;
-    assert!(world.pulled() > 10.0);
-    assert!((gained - world.pulled()).abs() < 1e-11 * gained, "{gained} {}", world.pulled());
+    assert!(world.mouse_work() > 10.0);
+    assert!(
+        (gained - world.mouse_work()).abs() < 1e-11 * gained,
+        "{gained} {}",
+        world.mouse_work()
+    );
 }
 
 #[test]
@@ -29,7 +33,7 @@ fn a_pulled_particle_comes_and_stays_whatever_the_step() {
     for dt in [1e-4, 1e-3, 0.02, 0.1] {
         let mut world = world(dt, 0.0);
         let target = DVec3::new(2.0, -1.0, 0.5);
-        assert!(world.pull(Some(Pull { body: 0, particle: 4, target })));
+        assert!(world.set_mouse_spring(Some(MouseSpring { body: 0, particle: 4, target })));
         while world.time() < 60.0 {
             world.step().unwrap();
         }
@@ -37,7 +41,7 @@ fn a_pulled_particle_comes_and_stays_whatever_the_step() {
         // the body may still swing about the particle, which tugs at it
         assert!((place - target).length() < 0.05, "dt {dt}: {place}");
         assert!(velocity.length() < 0.05, "dt {dt}: {velocity}");
-        assert!(world.pull(None));
+        assert!(world.set_mouse_spring(None));
     }
 }
 
@@ -45,8 +49,12 @@ fn a_pulled_particle_comes_and_stays_whatever_the_step() {
 fn what_is_not_there_cannot_be_pulled() {
     let mut world = world(1e-3, 0.0);
     for (body, particle, x) in [(1, 0, 0.0), (0, 5, 0.0), (0, 0, f64::NAN)] {
-        assert!(!world.pull(Some(Pull { body, particle, target: DVec3::X * x })));
+        assert!(!world.set_mouse_spring(Some(MouseSpring {
+            body,
+            particle,
+            target: DVec3::X * x
+        })));
     }
     world.step().unwrap();
-    assert_eq!(world.pulled(), 0.0);
+    assert_eq!(world.mouse_work(), 0.0);
 }

@@ -102,7 +102,7 @@ fn a_state_that_does_not_fit_is_refused_and_changes_nothing() {
     refuse(&|s| s.springs[0].swap(0, 1), "friction spring");
     refuse(&|s| s.springs[0][1] = s.springs[0][0], "friction spring");
     refuse(&|s| s.springs[0][0].anchor.x = f64::INFINITY, "`anchor`");
-    refuse(&|s| s.tally.slip = f64::NAN, "`slip` of the state");
+    refuse(&|s| s.totals.slip = f64::NAN, "`slip` of the state");
     world.restore(good).unwrap();
 }
 
@@ -161,7 +161,7 @@ fn springs_between_bodies_that_cannot_be_are_refused() {
         &|s| s.pair_springs[0].first = 9,
         &|s| s.pair_springs[last].particle = 2,
         &|s| s.pair_springs[last].other = 2,
-        &|s| s.pair_springs[last].kind = ContactKind::FirstInSecond,
+        &|s| s.pair_springs[last].kind = ContactKind::PointMesh,
         &|s| s.pair_springs[last].stretch.x = f64::NAN,
         &|s| s.pair_springs.swap(0, last),
     ];
@@ -169,6 +169,6 @@ fn springs_between_bodies_that_cannot_be_are_refused() {
         let found = spoil(change);
         assert!(matches!(found, Err(StateError::PairSpring { .. })), "{number}: {found:?}");
     }
-    let work: &dyn Fn(&mut State) = &|s| s.tally.work = f64::NAN;
+    let work: &dyn Fn(&mut State) = &|s| s.totals.work = f64::NAN;
     assert!(spoil(work).is_err());
 }

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use tumble::{
-    Body, DQuat, DVec3, Damping, Depths, Energy, Integrator, MassModel, Material, MaterialOverride,
-    Motion, Oscillation, Prescribed, Primitive, Sampling, Shape, Surface, WallBox, WallPlane,
-    World, WorldBuilder,
+    Body, ContactDepths, DQuat, DVec3, Damping, Energy, Integrator, MassModel, Material,
+    MaterialOverride, Motion, Oscillation, Prescribed, Primitive, Sampling, Shape, Surface,
+    WallBox, WallPlane, World, WorldBuilder,
 };
 
 /// Small numbers that look random, the same every time.
@@ -106,8 +106,8 @@ fn hash_after(steps: u32, threads: usize, integrator: Integrator) -> (String, us
     pool.install(|| {
         let mut world = heap(integrator).build().unwrap();
         advance(&mut world, steps);
-        let tally = world.state().tally;
-        assert!(tally.max_depth > 1e-3 && tally.slip > 0.0 && tally.work != 0.0, "{tally:?}");
+        let totals = world.state().totals;
+        assert!(totals.max_depth > 1e-3 && totals.slip > 0.0 && totals.work != 0.0, "{totals:?}");
         (world.state().hash(), world.state().pair_springs.len())
     })
 }
@@ -193,9 +193,9 @@ fn what_is_asked_of_a_state_does_not_depend_on_what_came_before() {
             for _ in 0..30 {
                 advance(&mut world, 40);
                 assert_eq!(world.energy(), Energy::of(world.model(), world.state()));
-                assert_eq!(world.depths(), Depths::of(world.model(), world.state()));
+                assert_eq!(world.contact_depths(), ContactDepths::of(world.model(), world.state()));
             }
-            let (springs, depths) = (&world.state().pair_springs, world.depths());
+            let (springs, depths) = (&world.state().pair_springs, world.contact_depths());
             assert!(!springs.is_empty() && depths.walls > 0.0, "{} {depths:?}", springs.len());
         });
     }

@@ -1,9 +1,9 @@
 //! The state as bytes: step, time, number of bodies; position, velocity, orientation (w, x, y, z),
 //! its rest, angular momentum and energy owed of each; number of friction springs of each, and wall, particle
 //! anchor and stretch of each spring; number of springs between bodies, and first, second, kind (a byte), particle,
-//! other and stretch of each; the tally.
+//! other and stretch of each; the totals.
 
-use tumble::{BodyState, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, State, Tally};
+use tumble::{BodyState, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, RunTotals, State};
 
 use super::Bytes;
 
@@ -12,15 +12,15 @@ const SPRING: usize = 4 + 4 + 6 * 8;
 const PAIR: usize = 4 * 4 + 1 + 3 * 8;
 /// The kinds of contact by their bytes.
 const KINDS: [ContactKind; 4] = [
-    ContactKind::Wall,
-    ContactKind::Spheres,
-    ContactKind::FirstInSecond,
-    ContactKind::SecondInFirst,
+    ContactKind::SphereWall,
+    ContactKind::SphereSphere,
+    ContactKind::PointMesh,
+    ContactKind::MeshPoint,
 ];
 
 pub(super) fn bytes(state: &State) -> Vec<u8> {
     // taken apart to the last field: one that is added later cannot be forgotten here
-    let State { step, time, bodies, springs, pair_springs, tally } = state;
+    let State { step, time, bodies, springs, pair_springs, totals } = state;
     let spring_count: usize = springs.iter().map(Vec::len).sum();
     let counted = spring_count * SPRING + pair_springs.len() * PAIR;
     let mut out = Vec::with_capacity(80 + bodies.len() * (BODY + 8) + counted);
@@ -62,7 +62,7 @@ pub(super) fn bytes(state: &State) -> Vec<u8> {
         out.extend(other.to_le_bytes());
         put(&mut out, stretch.to_array());
     }
-    let Tally { drag, dashpot, slip, work, max_depth, evaluations } = *tally;
+    let RunTotals { drag, dashpot, slip, work, max_depth, evaluations } = *totals;
     put(&mut out, [drag, dashpot, slip, work, max_depth]);
     out.extend(evaluations.to_le_bytes());
     out
@@ -79,7 +79,7 @@ pub(super) fn parse(mut from: Bytes) -> Option<State> {
     let bodies = (0..count).map(|_| body(&mut from)).collect::<Option<_>>()?;
     let springs = (0..count).map(|_| springs(&mut from)).collect::<Option<_>>()?;
     let pair_springs = pair_springs(&mut from)?;
-    let tally = Tally {
+    let totals = RunTotals {
         drag: from.f64()?,
         dashpot: from.f64()?,
         slip: from.f64()?,
@@ -87,7 +87,7 @@ pub(super) fn parse(mut from: Bytes) -> Option<State> {
         max_depth: from.f64()?,
         evaluations: from.u64()?,
     };
-    from.is_empty().then_some(State { step, time, bodies, springs, pair_springs, tally })
+    from.is_empty().then_some(State { step, time, bodies, springs, pair_springs, totals })
 }
 
 fn body(from: &mut Bytes) -> Option<BodyState> {

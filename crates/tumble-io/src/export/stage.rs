@@ -133,7 +133,8 @@ impl Bounds {
             low = low.min(pose.position);
             high = high.max(pose.position);
         }
-        let largest = replay.world.bodies().map(|body| body.model().reach()).fold(0.0, f64::max);
+        let largest =
+            replay.world.bodies().map(|body| body.model().bounding_radius()).fold(0.0, f64::max);
         let radius = 0.5 * (high - low).length() + 1.5 * largest;
         // a lone particle at rest still lies on something
         let radius = if radius > 0.0 { radius } else { 1.0 };

@@ -169,8 +169,8 @@ fn notes(scene: &Scene) -> Vec<&'static str> {
 
 /// A copy, in the room of the one before.
 fn keep(kept: &mut State, state: &State) {
-    let State { step, time, bodies, springs, pair_springs, tally } = state;
-    (kept.step, kept.time, kept.tally) = (*step, *time, *tally);
+    let State { step, time, bodies, springs, pair_springs, totals } = state;
+    (kept.step, kept.time, kept.totals) = (*step, *time, *totals);
     kept.bodies.clone_from(bodies);
     kept.springs.clone_from(springs);
     kept.pair_springs.clone_from(pair_springs);
@@ -189,7 +189,7 @@ fn summarise(
     (steps_here, clock): (u64, Duration),
     energy: &EnergyRow,
 ) -> Summary {
-    let (steps, depths) = (world.state().step, world.depths());
+    let (steps, depths) = (world.state().step, world.contact_depths());
     let seconds = clock.as_secs_f64();
     Summary {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -208,8 +208,8 @@ fn summarise(
         energy_end: energy.total,
         energy_residual: energy.residual,
         critical_dt: critical_dt(world.model()).map(|critical| critical.dt),
-        force_evaluations: world.state().tally.evaluations,
-        max_depth: world.state().tally.max_depth.max(depths.bodies).max(depths.walls),
+        force_evaluations: world.state().totals.evaluations,
+        max_depth: world.state().totals.max_depth.max(depths.bodies).max(depths.walls),
         body_depth_end: depths.bodies,
         wall_depth_end: depths.walls,
         state_hash: world.state().hash(),

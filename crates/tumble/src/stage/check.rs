@@ -1,35 +1,39 @@
-//! The last stage of every step: is the state still one that physics could have made?
+//! The last stage of a step: is the new state one that physics could have produced?
 
 use glam::DMat3;
 
-use super::TooFast;
+use crate::contact::tunnelling::TunnellingRisk;
+use crate::workspace::Failure;
 use crate::{Batch, BodyModel, BodyState, Model, Scratch, State, StepError};
 
-/// Looks for a state with a number that is NaN or infinite, a particle that has come more than half way from
-/// one wall to the wall that faces it, and a step that moves a particle that far: both could have
-/// passed through.
+/// Looks for numbers that are NaN or infinite, for particles deeper in a wall than half the distance to the wall that faces
+/// it, and for particles that move farther than that in one step: both could have passed through.
 pub fn check(batch: &mut Batch) {
-    let Batch { model, first, bodies, forces, rooms, .. } = batch;
+    let Batch { model, first, bodies, forces, workspaces, .. } = batch;
     let bodies = model.bodies[*first..].iter().zip(&**bodies).zip(&**forces);
-    rooms[0].problem = (*first..).zip(bodies).find_map(|(index, ((body, state), forces))| {
-        let problem = if is_finite(state) { None } else { not_finite(state) };
-        let problem = problem.or_else(|| {
-            let limit = 0.5 * model.gap?;
+    workspaces[0].failure = (*first..).zip(bodies).find_map(|(index, ((body, state), forces))| {
+        let failure = if is_finite(state) { None } else { not_finite(state) };
+        let failure = failure.or_else(|| {
+            let limit = 0.5 * model.wall_gap?;
             too_deep(model, body, state, forces.max_depth, limit)
                 .or_else(|| too_far(model, body, state, limit))
         });
-        Some((index, problem?))
+        Some((index, failure?))
     });
 }
 
-/// Refuses what [`check`] has found at the end of a step, and two bodies that moved against each other, in one step, by half of
-/// what the thinner of them is thick.
+/// Reports what [`check`] found, or else two bodies that moved relative to each other, in one step, by more than half of the
+/// thickness of the thinner one.
 ///
 /// # Errors
-/// [`StepError`] names the step, time, body, particle, quantity and value, and a step that would do.
-pub fn refuse(model: &Model, state: &State, scratch: &mut Scratch) -> Result<(), StepError> {
-    let problem = scratch.rooms.iter_mut().find_map(|room| room.problem.take());
-    if let Some((index, Problem { quantity, value, particle, limit })) = problem {
+/// [`StepError`] names the step, time, body, particle, quantity and value, and a time step that would do.
+pub fn report_failure(
+    model: &Model,
+    state: &State,
+    scratch: &mut Scratch,
+) -> Result<(), StepError> {
+    let failure = scratch.workspaces.iter_mut().find_map(|workspace| workspace.failure.take());
+    if let Some((index, Failure { quantity, value, particle, limit })) = failure {
         return Err(StepError {
             step: state.step,
             time: state.time,
@@ -38,49 +42,40 @@ pub fn refuse(model: &Model, state: &State, scratch: &mut Scratch) -> Result<(),
             quantity,
             value,
             other: None,
-            // a quarter of the limit leaves room for the motion to go on
+            // a quarter of the limit leaves a margin for the motion to go on
             dt: limit.map(|limit| 0.25 * model.dt * limit / value),
         });
     }
-    match scratch.meeting.too_fast() {
-        Some(pair) => Err(passes_through(model, state, &pair)),
+    match scratch.body_contacts.tunnelling_risk() {
+        Some(risk) => Err(tunnelling_error(model, state, &risk)),
         None => Ok(()),
     }
 }
 
-/// Two bodies so fast that one could pass through the other unseen.
-fn passes_through(model: &Model, state: &State, pair: &TooFast) -> StepError {
+/// Two bodies so fast that one could pass through the other within a step.
+fn tunnelling_error(model: &Model, state: &State, risk: &TunnellingRisk) -> StepError {
     let name = |body: u32| model.names[body as usize].clone();
     StepError {
         step: state.step,
         time: state.time,
-        body: name(pair.body),
-        particle: Some(pair.particle as usize),
+        body: name(risk.body),
+        particle: Some(risk.particle as usize),
         quantity: "displacement",
-        value: pair.way,
-        other: Some(name(pair.other)),
-        dt: Some(0.5 * model.dt * pair.limit / pair.way),
+        value: risk.displacement,
+        other: Some(name(risk.other)),
+        dt: Some(0.5 * model.dt * risk.limit / risk.displacement),
     }
 }
 
-/// What is wrong with a body.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Problem {
-    quantity: &'static str,
-    value: f64,
-    particle: Option<usize>,
-    limit: Option<f64>,
-}
-
 fn is_finite(state: &BodyState) -> bool {
-    // zero times what is not finite is NaN, and so is whatever it is added to
+    // 0 · x is NaN where x is not finite, and a sum with NaN is NaN
     let sum = (state.position + state.velocity + state.angular_momentum) * 0.0;
     let q = state.orientation * 0.0;
     sum.x + sum.y + sum.z + (q.x + q.y) + (q.z + q.w) == 0.0
 }
 
 /// The first quantity that is not finite, and its value.
-fn not_finite(state: &BodyState) -> Option<Problem> {
+fn not_finite(state: &BodyState) -> Option<Failure> {
     let [qx, qy, qz, qw] = state.orientation.to_array();
     let quantities: [(&str, &[f64]); 4] = [
         ("position", &state.position.to_array()),
@@ -90,50 +85,50 @@ fn not_finite(state: &BodyState) -> Option<Problem> {
     ];
     quantities.iter().find_map(|(quantity, values)| {
         let value = *values.iter().find(|v| !v.is_finite())?;
-        Some(Problem { quantity, value, particle: None, limit: None })
+        Some(Failure { quantity, value, particle: None, limit: None })
     })
 }
 
-/// A contact deeper than `limit` (m), with its particle.
+/// A contact deeper than `limit` (m), and its particle.
 fn too_deep(
     model: &Model,
     body: &BodyModel,
     state: &BodyState,
     depth: f64,
     limit: f64,
-) -> Option<Problem> {
+) -> Option<Failure> {
     if depth <= limit {
         return None;
     }
-    let deepest = |index: usize| {
-        let (place, _) = body.particle(state, index);
-        model.walls.iter().map(|wall| wall.depth(place)).fold(f64::NEG_INFINITY, f64::max)
+    let depth_of = |index: usize| {
+        let (position, _) = body.particle(state, index);
+        model.walls.iter().map(|wall| wall.depth(position)).fold(f64::NEG_INFINITY, f64::max)
     };
     let particle =
-        (0..body.shape.particles().len()).max_by(|&a, &b| deepest(a).total_cmp(&deepest(b)));
-    Some(Problem { quantity: "depth", value: depth, particle, limit: Some(limit) })
+        (0..body.shape.particles().len()).max_by(|&a, &b| depth_of(a).total_cmp(&depth_of(b)));
+    Some(Failure { quantity: "depth", value: depth, particle, limit: Some(limit) })
 }
 
 /// A particle that moves farther than `limit` (m) in a step.
-fn too_far(model: &Model, body: &BodyModel, state: &BodyState, limit: f64) -> Option<Problem> {
-    // |ω| is at most |L| over the smallest moment, and (a + b)² at most 2 a² + 2 b²: most bodies
-    // need no closer look, and no root
+fn too_far(model: &Model, body: &BodyModel, state: &BodyState, limit: f64) -> Option<Failure> {
+    // a cheap bound first: |ω| ≤ |L| / I_min and (a + b)² ≤ 2 a² + 2 b²
     let rim = state.angular_momentum * (body.inverse_moments.max_element() * body.shape.radius());
     let (v, rim) = (state.velocity * model.dt, rim * model.dt);
     if 2.0 * (v.length_squared() + rim.length_squared()) <= limit * limit {
         return None;
     }
-    let way = |omega: f64| model.dt * (state.velocity.length() + omega * body.shape.radius());
+    let displacement =
+        |omega: f64| model.dt * (state.velocity.length() + omega * body.shape.radius());
     let omega =
         body.angular_velocity(DMat3::from_quat(state.orientation), state.angular_momentum).length();
-    if way(omega) <= limit {
+    if displacement(omega) <= limit {
         return None;
     }
     let speed = |index: usize| body.particle(state, index).1.length();
     let particle =
         (0..body.shape.particles().len()).max_by(|&a, &b| speed(a).total_cmp(&speed(b)))?;
     let value = model.dt * speed(particle);
-    (value > limit).then_some(Problem {
+    (value > limit).then_some(Failure {
         quantity: "displacement",
         value,
         particle: Some(particle),

@@ -1,10 +1,10 @@
-//! Line 8: drag on every particle.
+//! Line 8 of the basic system: drag on every particle.
 
 use glam::DMat3;
 
 use crate::{Batch, BodyModel, BodyState, Wrench};
 
-/// Adds up fᵢ = −c vᵢ over the particles of each body, in closed form.
+/// Sets the drag of each body: the sum of fᵢ = −c vᵢ over its particles, in closed form.
 pub fn drag(batch: &mut Batch) {
     let c = batch.model.velocity_damping_stiffness;
     let bodies = batch.model.bodies[batch.first..].iter().zip(&*batch.bodies);
@@ -13,9 +13,8 @@ pub fn drag(batch: &mut Batch) {
     }
 }
 
-/// With equal particles carrying the mass, Σ rᵢ = 0 and Σ rᵢ × (ω × rᵢ) = L/m, so that
-/// F = −(c/m) M v and τ = −(c/m) L. Else F = −c (N v + ω × S) and τ = −c (S × v + G ω), with
-/// S = Σ R rᵢ and G = R Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) Rᵀ.
+/// Where equal particles carry the mass, Σ rᵢ = 0 and Σ rᵢ × (ω × rᵢ) = L/m, so F = −(c/m) M v and τ = −(c/m) L.
+/// Otherwise F = −c (N v + ω × S) and τ = −c (S × v + G ω), with S = Σ R rᵢ and G = R Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) Rᵀ.
 fn body_drag(body: &BodyModel, state: &BodyState, c: f64) -> Wrench {
     let moments = body.shape.moments();
     if moments.carry_mass {

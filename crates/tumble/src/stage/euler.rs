@@ -1,26 +1,28 @@
-//! Lines 5 to 7: the basic system's way to advance a body.
+//! Lines 5 to 7 of the basic system: explicit Euler steps of position, orientation and angular momentum.
 
 use glam::{DMat3, DQuat, DVec3};
 
-use super::kick::resist;
+use super::kick::kinematic_totals;
 use crate::state::NO_REST;
-use crate::{Batch, BodyForces, BodyModel, BodyState, Tally, Wrench};
+use crate::{Batch, BodyForces, BodyModel, BodyState, RunTotals, Wrench};
 
-/// Advances every body by h with the forces of the start of the step.
+/// Advances every free body by h with the forces of the start of the step.
 pub fn euler(batch: &mut Batch) {
     let h = batch.model.dt;
-    let mut tally = *batch.tally();
+    let mut totals = *batch.totals();
     let bodies = batch.model.bodies[batch.first..].iter().zip(&mut *batch.bodies);
-    let springs = batch.springs.iter_mut().zip(&mut *batch.next);
-    for (((body, state), forces), (springs, next)) in bodies.zip(&*batch.forces).zip(springs) {
+    let springs = batch.springs.iter_mut().zip(&mut *batch.next_springs);
+    for (((body, state), forces), (springs, next_springs)) in
+        bodies.zip(&*batch.forces).zip(springs)
+    {
         if body.is_free() {
-            advance(body, state, forces, h, &mut tally);
-            std::mem::swap(springs, next);
+            advance(body, state, forces, h, &mut totals);
+            std::mem::swap(springs, next_springs);
         } else {
-            tally += resist(body, state, forces, h);
+            totals += kinematic_totals(body, state, forces, h);
         }
     }
-    *batch.tally() = tally;
+    *batch.totals() = totals;
 }
 
 /// Advances one body.
@@ -29,7 +31,7 @@ fn advance(
     state: &mut BodyState,
     forces: &BodyForces,
     h: f64,
-    tally: &mut Tally,
+    totals: &mut RunTotals,
 ) {
     let old_velocity = state.velocity;
     let old_omega = angular_velocity(body, state);
@@ -39,33 +41,33 @@ fn advance(
     state.velocity += total.force / body.mass * h;
     state.position += state.velocity * h;
 
-    // 6: the quaternion turns with the angular velocity of the start of the step
-    let spin = DQuat::from_xyzw(old_omega.x, old_omega.y, old_omega.z, 0.0);
-    state.orientation = (state.orientation + spin * state.orientation * (0.5 * h)).normalize();
+    // 6: quaternion update with the angular velocity of the start of the step
+    let omega = DQuat::from_xyzw(old_omega.x, old_omega.y, old_omega.z, 0.0);
+    state.orientation = (state.orientation + omega * state.orientation * (0.5 * h)).normalize();
     state.orientation_rest = NO_REST;
 
-    // 7: angular momentum; ω follows from it through the inertia turned by the new orientation
+    // 7: angular momentum; ω follows from it through the inertia in the new orientation
     state.angular_momentum += total.torque * h;
-    *tally += Tally {
-        slip: forces.slip,
-        work: h * forces.belt_power,
-        dashpot: h * forces.belt_loss,
+    *totals += RunTotals {
+        slip: forces.slip_loss,
+        work: h * forces.surface_power,
+        dashpot: h * forces.surface_dashpot_power,
         max_depth: forces.max_depth,
         evaluations: u64::from(forces.max_depth > 0.0),
-        ..Tally::default()
+        ..RunTotals::default()
     };
     if forces.drag == Wrench::default() && forces.dashpot == Wrench::default() {
         return;
     }
 
-    // the work of a force over the step is F·h times the mean velocity: exactly its kinetic energy
+    // F·h times the mean velocity is exactly the kinetic energy that a force adds over the step
     let new_omega = angular_velocity(body, state);
     let mean_velocity = 0.5 * (old_velocity + state.velocity);
     let mean_omega = 0.5 * (old_omega + new_omega);
-    let lost =
+    let dissipated =
         |wrench: &Wrench| -h * (wrench.force.dot(mean_velocity) + wrench.torque.dot(mean_omega));
-    tally.drag += lost(&forces.drag);
-    tally.dashpot += lost(&forces.dashpot);
+    totals.drag += dissipated(&forces.drag);
+    totals.dashpot += dissipated(&forces.dashpot);
 }
 
 /// 7: I⁻¹ = R I₀⁻¹ Rᵀ, ω = I⁻¹ L.

@@ -1,64 +1,69 @@
-//! The kick: contact forces change the momenta of bodies that stand still for it.
+//! The kick: the impulse of the contact forces at fixed position and orientation.
 
-use super::contact::Placed;
-use crate::{Batch, BodyForces, BodyModel, BodyState, Tally};
+use crate::kinematics::Kinematics;
+use crate::{Batch, BodyForces, BodyModel, BodyState, RunTotals};
 
-/// v ← v + F h/M, L ← L + τ h, with the contact forces of [`contact`](super::contact()) and [`meet`](super::meet()) over the time
-/// `h` (s).
+/// Applies the contact forces for the time `h` (s): v ← v + F h/M, L ← L + τ h.
 pub fn kick(batch: &mut Batch, h: f64) {
-    let mut tally = *batch.tally();
+    let mut totals = *batch.totals();
     let bodies = batch.model.bodies[batch.first..].iter().zip(&mut *batch.bodies);
-    for (((body, state), forces), &near) in bodies.zip(&*batch.forces).zip(&*batch.near) {
+    for (((body, state), forces), &may_touch) in bodies.zip(&*batch.forces).zip(&*batch.may_touch) {
         if !body.is_free() {
-            tally += resist(body, state, forces, h);
-        } else if near {
-            tally += kick_body(body, state, forces, h);
+            totals += kinematic_totals(body, state, forces, h);
+        } else if may_touch {
+            totals += kick_body(body, state, forces, h);
         }
     }
-    *batch.tally() = tally;
-    // the springs of who flies are left alone: there are none
-    let springs = batch.springs.iter_mut().zip(&mut *batch.next);
-    for ((springs, next), _) in springs.zip(&*batch.near).filter(|(_, near)| **near) {
-        std::mem::swap(springs, next);
+    *batch.totals() = totals;
+    // bodies in free flight have no springs
+    let springs = batch.springs.iter_mut().zip(&mut *batch.next_springs);
+    for ((springs, next_springs), _) in
+        springs.zip(&*batch.may_touch).filter(|(_, may_touch)| **may_touch)
+    {
+        std::mem::swap(springs, next_springs);
     }
 }
 
-/// Kicks one body; returns what its contacts lost.
+/// Kicks one body; returns what its contacts dissipate.
 ///
-/// The place stands still, so a wrench gives the body exactly its power at the mean of the old and
-/// new velocities, times h.
-pub(crate) fn kick_body(
+/// The pose is fixed, so the work of a wrench is exactly its power at the mean of the old and new velocities, times h.
+pub(super) fn kick_body(
     body: &BodyModel,
     state: &mut BodyState,
     forces: &BodyForces,
     h: f64,
-) -> Tally {
+) -> RunTotals {
     if forces.max_depth == 0.0 {
-        return Tally { slip: forces.slip, ..Tally::default() };
+        return RunTotals { slip: forces.slip_loss, ..RunTotals::default() };
     }
     let total = forces.contact();
-    let mean = Placed::new(body, state).half_kicked(&total, h);
+    let mean = Kinematics::new(body, state).at_mid_kick(&total, h);
     state.velocity += total.force * (h / body.mass);
     state.angular_momentum += total.torque * h;
-    Tally {
-        dashpot: h * (mean.power_lost(&forces.dashpot) + forces.belt_loss),
-        slip: forces.slip,
-        work: h * forces.belt_power,
+    RunTotals {
+        dashpot: h * (mean.dissipated_power(&forces.dashpot) + forces.surface_dashpot_power),
+        slip: forces.slip_loss,
+        work: h * forces.surface_power,
         max_depth: forces.max_depth,
         evaluations: 1,
-        ..Tally::default()
+        ..RunTotals::default()
     }
 }
 
-/// What a body that nothing moves does on those that push it: work against their forces, and the part of
-/// the loss in dashpots that its own velocity makes.
-pub(crate) fn resist(body: &BodyModel, state: &BodyState, forces: &BodyForces, h: f64) -> Tally {
-    let place = Placed::new(body, state);
-    Tally {
-        work: h * (place.power_lost(&forces.contact()) + forces.belt_power),
-        dashpot: h * (place.power_lost(&forces.dashpot) + forces.belt_loss),
-        slip: forces.slip,
+/// What a kinematic body adds to the totals: the work that it does against its contact forces, and the part of the
+/// dissipation in dashpots that is due to its own velocity.
+pub(super) fn kinematic_totals(
+    body: &BodyModel,
+    state: &BodyState,
+    forces: &BodyForces,
+    h: f64,
+) -> RunTotals {
+    let kinematics = Kinematics::new(body, state);
+    RunTotals {
+        work: h * (kinematics.dissipated_power(&forces.contact()) + forces.surface_power),
+        dashpot: h * (kinematics.dissipated_power(&forces.dashpot) + forces.surface_dashpot_power),
+        slip: forces.slip_loss,
         max_depth: forces.max_depth,
-        ..Tally::default()
+        ..RunTotals::default()
     }
 }

@@ -1,30 +1,30 @@
 //! The stages of a step, one file each. [`step`](crate::step) calls them in order.
+//!
+//! A stage takes a [`Batch`](crate::Batch) of bodies. [`around_body_contact`] is the one place where bodies of different
+//! batches see each other.
 
-mod carry;
+mod body_contact;
 mod check;
-mod contact;
 mod drag;
+mod drift;
 mod euler;
-mod fly;
+mod free_flight;
 mod gravity;
 mod kick;
-mod meet;
-mod pull;
-mod reach;
-mod refine;
+mod kinematic;
+mod mouse_spring;
+mod substep;
+mod wall_contact;
 
-pub use carry::carry;
-pub(crate) use check::Problem;
-pub use check::{check, refuse};
-pub use contact::contact;
-pub(crate) use contact::{Placed, Touching};
+pub use body_contact::around_body_contact;
+pub use check::{check, report_failure};
 pub use drag::drag;
+pub use drift::{drift, drift_free_flight};
 pub use euler::euler;
-pub use fly::{cruise, fly};
+pub use free_flight::find_free_flight;
 pub use gravity::gravity;
 pub use kick::kick;
-pub(crate) use meet::{Feelings, Meeting, Pose, TooFast, can_touch, overlaps, push_apart};
-pub use meet::{arrive, feel, keep, meet};
-pub use pull::{Pull, pull};
-pub use reach::reach;
-pub use refine::refine;
+pub use kinematic::move_kinematic;
+pub use mouse_spring::{MouseSpring, apply_mouse_spring};
+pub use substep::substep;
+pub use wall_contact::wall_contact;

@@ -1,0 +1,146 @@
+//! The contacts of one chunk of bodies, and their forces.
+
+use fearless_simd::Simd;
+use glam::DVec3;
+
+use super::contact_lanes::{ContactLanes, LaneInput};
+use super::neighbour_list::ChunkNeighbours;
+use super::pair::Pair;
+use super::pair_forces::{PairForces, PairLosses, PairWrench};
+use super::pose::BodyPose;
+use super::tunnelling::TunnellingRisk;
+use crate::PairSpring;
+use crate::lanes::vector;
+
+/// The contacts of the bodies of one chunk, as first bodies of pairs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ChunkContacts {
+    /// The points that were examined, pair by pair. Entries from `lanes_used` on are spare.
+    pub(super) lanes: Vec<ContactLanes>,
+    pub(super) lanes_used: usize,
+    /// The pairs of these points, with their forces.
+    pub(super) pairs: Vec<PairForces>,
+    /// Losses of the same pairs, after the latest full evaluation.
+    pub(super) losses: Vec<PairLosses>,
+    /// For each pair of the neighbour list, its index in `pairs`, or [`NO_CONTACT`].
+    pub(super) pair_index: Vec<u32>,
+    /// Energy (J) of the springs of contacts that have ended, by body of the chunk.
+    pub(super) released: Vec<f64>,
+    /// The friction springs after the latest evaluation.
+    pub(super) springs: Vec<PairSpring>,
+    /// The first pair whose bodies could pass through each other within a step.
+    pub(super) tunnelling_risk: Option<TunnellingRisk>,
+    /// Buffer for points that may touch.
+    pub(super) candidates: Vec<Candidate>,
+    /// Buffer for the input of eight contacts.
+    pub(super) input: LaneInput,
+}
+
+/// Marks a pair of the neighbour list without contact.
+pub(super) const NO_CONTACT: u32 = u32::MAX;
+
+/// Buffers for the contacts of a chunk and their springs.
+pub(super) type ContactBuffers = (Vec<ContactLanes>, Vec<PairSpring>);
+
+/// A point that may touch.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Candidate {
+    /// Index of its pair in [`ChunkContacts::pairs`].
+    pub pair: u32,
+    /// Index of the point in the neighbour list.
+    pub point: u32,
+}
+
+impl ChunkContacts {
+    /// Forgets all contacts; `pair_count` pairs are in the neighbour list.
+    pub(super) fn clear(&mut self, pair_count: usize) {
+        self.lanes_used = 0;
+        self.springs.clear();
+        self.pairs.clear();
+        self.losses.clear();
+        self.pair_index.clear();
+        self.pair_index.resize(pair_count, NO_CONTACT);
+        self.tunnelling_risk = None;
+    }
+
+    /// Evaluates the forces of all contacts again, at the velocities of `poses`, and stores the springs.
+    #[inline(always)]
+    pub(super) fn evaluate_again<S: Simd>(
+        &mut self,
+        simd: S,
+        neighbours: &ChunkNeighbours,
+        poses: &[BodyPose],
+    ) {
+        for pair in &mut self.pairs {
+            pair.wrench = PairWrench::default();
+        }
+        self.losses.clear();
+        self.losses.resize(self.pairs.len(), PairLosses::default());
+        self.springs.clear();
+        for index in 0..self.lanes_used {
+            let Self { lanes, pairs, losses, .. } = self;
+            lanes[index].add_forces::<S, false>(simd, poses, pairs, losses);
+            self.store_springs(index, &neighbours.pairs);
+        }
+    }
+
+    /// Stores the springs of eight contacts after their evaluation.
+    #[inline(always)]
+    pub(super) fn store_springs(&mut self, index: usize, pairs: &[Pair]) {
+        let lanes = &self.lanes[index];
+        for lane in lanes.in_contact().filter(|&lane| lanes.friction[lane] > 0.0) {
+            let pair = self.pairs[lanes.pair[lane] as usize].pair;
+            let mut spring = lanes.spring_key(lane, &pairs[pair as usize]);
+            spring.stretch = lanes.kept_stretch(lane);
+            self.springs.push(spring);
+        }
+    }
+
+    /// Takes buffers from `spare` where this chunk has none.
+    pub(super) fn take_buffers(&mut self, spare: &mut Vec<ContactBuffers>) {
+        if self.lanes.is_empty()
+            && let Some(buffers) = spare.pop()
+        {
+            (self.lanes, self.springs) = buffers;
+        }
+    }
+
+    /// Gives up the contacts and springs, which are no longer needed, as buffers for another chunk.
+    pub(super) fn release_buffers(&mut self) -> ContactBuffers {
+        self.lanes_used = 0;
+        (std::mem::take(&mut self.lanes), std::mem::take(&mut self.springs))
+    }
+
+    /// Energy in the springs (J).
+    pub(super) fn elastic_energy(&self) -> f64 {
+        // the sum runs contact by contact: which lane a contact is in depends on the lists
+        let contacts = self.lanes[..self.lanes_used]
+            .iter()
+            .flat_map(|lanes| lanes.in_contact().map(move |lane| (lanes, lane)));
+        let stored: f64 = contacts.map(|(lanes, lane)| lanes.elastic_energy(lane)).sum();
+        // the springs of contacts that have ended are released at the next kick
+        stored + self.released.iter().sum::<f64>()
+    }
+
+    /// Calls `visit` with the pair, the normal and the depth (m) of each contact.
+    pub(super) fn for_each_contact(
+        &self,
+        neighbours: &ChunkNeighbours,
+        mut visit: impl FnMut(&Pair, DVec3, f64),
+    ) {
+        for lanes in &self.lanes[..self.lanes_used] {
+            for lane in lanes.in_contact() {
+                let pair = self.pairs[lanes.pair[lane] as usize].pair;
+                let normal = vector(&lanes.normal, lane);
+                visit(&neighbours.pairs[pair as usize], normal, lanes.depth[lane]);
+            }
+        }
+    }
+
+    /// Records a risk of tunnelling, if its pair comes before that of the one on record.
+    pub(super) fn record(&mut self, risk: TunnellingRisk) {
+        if self.tunnelling_risk.is_none_or(|recorded| risk.pair < recorded.pair) {
+            self.tunnelling_risk = Some(risk);
+        }
+    }
+}

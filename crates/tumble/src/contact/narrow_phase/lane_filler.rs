@@ -1,0 +1,150 @@
+//! Collects points in lanes of eight; full lanes become contacts with forces.
+
+use fearless_simd::Simd;
+
+use super::pair_poses::{PairPoses, PointGeometry};
+use crate::PairSpring;
+use crate::contact::chunk_contacts::{Candidate, ChunkContacts};
+use crate::contact::contact_lanes::ContactLanes;
+use crate::contact::context::ContactContext;
+use crate::contact::friction_history::FrictionHistory;
+use crate::contact::pair::{Pair, Point};
+use crate::contact::pair_forces::{PairForces, PairLosses, PairWrench};
+use crate::contact::tunnelling::TunnellingRisk;
+use crate::lanes::LANES;
+
+/// Fills lanes with points, and takes full lanes through geometry, friction and forces.
+pub(super) struct LaneFiller<'a> {
+    pub context: &'a ContactContext<'a>,
+    pub contacts: &'a mut ChunkContacts,
+    pub history: FrictionHistory<'a>,
+    /// Number of lanes in use.
+    count: usize,
+    /// For each lane, the sum of the path lengths of both bodies (m).
+    path: [f64; LANES],
+    /// For each lane, how far the bodies may move relative to each other in a step (m).
+    step_displacement: [f64; LANES],
+}
+
+impl<'a> LaneFiller<'a> {
+    pub fn new(
+        contacts: &'a mut ChunkContacts,
+        context: &'a ContactContext<'a>,
+        history: FrictionHistory<'a>,
+    ) -> Self {
+        let zero = [0.0; LANES];
+        Self { context, contacts, history, count: 0, path: zero, step_displacement: zero }
+    }
+
+    /// Starts a pair; returns its index in [`ChunkContacts::pairs`].
+    #[inline(always)]
+    pub fn begin_pair<const PREDICT: bool>(&mut self, index: usize, pair: &Pair) -> u32 {
+        let wrench = PairWrench::default();
+        self.contacts.pairs.push(PairForces { pair: index as u32, first: pair.first, wrench });
+        if !PREDICT {
+            self.contacts.losses.push(PairLosses::default());
+        }
+        self.contacts.pairs.len() as u32 - 1
+    }
+
+    /// Adds a point of a pair; returns whether all lanes are full.
+    #[inline(always)]
+    pub fn push(
+        &mut self,
+        poses: &PairPoses,
+        pair: &Pair,
+        candidate: Candidate,
+        geometry: PointGeometry,
+        point: &Point,
+    ) -> bool {
+        let lane = self.count;
+        let ChunkContacts { lanes, lanes_used, input, .. } = &mut *self.contacts;
+        if lanes.len() == *lanes_used {
+            lanes.push(ContactLanes::default());
+        }
+        let lanes = &mut lanes[*lanes_used];
+        self.path[lane] = poses.path;
+        // tunnelling through meshes is judged by their relative path, in `point_mesh`
+        self.step_displacement[lane] =
+            if pair.is_point_mesh() { 0.0 } else { poses.step_displacement };
+        lanes.pair[lane] = candidate.pair;
+        lanes.point[lane] = candidate.point;
+        if lane == 0 {
+            (lanes.has_friction, lanes.has_surface_velocity) = (false, false);
+        }
+        poses.write_law(pair, point, lane, lanes);
+        poses.write_input(geometry, lane, input);
+        self.count = lane + 1;
+        self.count == LANES
+    }
+
+    /// Computes geometry, friction springs and forces of the lanes in use.
+    #[inline(always)]
+    pub fn flush<S: Simd, const PREDICT: bool>(
+        &mut self,
+        simd: S,
+        pairs: &mut [Pair],
+        points: &mut [Point],
+    ) {
+        let count = std::mem::take(&mut self.count);
+        if count == 0 {
+            return;
+        }
+        let ContactContext { poses, time_since_kick, .. } = *self.context;
+        let ChunkContacts { lanes, lanes_used, input, .. } = &mut *self.contacts;
+        let current = &mut lanes[*lanes_used];
+        current.count = count;
+        current.compute_geometry(simd, input);
+        for lane in 0..count {
+            self.finish_lane(lane, pairs, points);
+        }
+        let ChunkContacts { lanes, lanes_used, input, pairs: forces, losses, .. } =
+            &mut *self.contacts;
+        let current = &mut lanes[*lanes_used];
+        *lanes_used += 1;
+        current.depth[count..].fill(0.0);
+        if current.has_friction {
+            current.advance_friction(simd, input, poses, time_since_kick);
+        }
+        current.add_forces::<S, PREDICT>(simd, poses, forces, losses);
+        if !PREDICT {
+            self.contacts.store_springs(self.contacts.lanes_used - 1, pairs);
+        }
+    }
+
+    /// Writes the gap of a lane back to the neighbour list, and finds the spring that its contact had.
+    #[inline(always)]
+    fn finish_lane(&mut self, lane: usize, pairs: &mut [Pair], points: &mut [Point]) {
+        let ChunkContacts { lanes, lanes_used, pairs: forces, pair_index, input, .. } =
+            &mut *self.contacts;
+        let lanes = &mut lanes[*lanes_used];
+        let index = forces[lanes.pair[lane] as usize].pair as usize;
+        let (pair, point) = (&mut pairs[index], &mut points[lanes.point[lane] as usize]);
+        let (path, step_displacement) = (self.path[lane], self.step_displacement[lane]);
+        input.has_spring[lane] = 0.0;
+        if lanes.depth[lane] > 0.0 {
+            point.clear_until = 0.0;
+            pair_index[index] = lanes.pair[lane];
+            if lanes.friction[lane] > 0.0 {
+                let key: PairSpring = lanes.spring_key(lane, pair);
+                if let Some(stretch) = self.history.take(&key) {
+                    lanes.set_old_stretch(lane, stretch);
+                    input.has_spring[lane] = 1.0;
+                }
+            }
+        } else {
+            point.clear_until = path - lanes.depth[lane];
+            lanes.depth[lane] = 0.0;
+        }
+        // `point_mesh` sets the value of its pairs as a whole
+        if !pair.is_point_mesh() {
+            pair.clear_until = pair.clear_until.min(point.clear_until);
+        }
+        if step_displacement > pair.tunnelling_limit && path + step_displacement > point.clear_until
+        {
+            let model = self.context.model;
+            let risk = TunnellingRisk::new(model, index, pair, point, step_displacement);
+            self.contacts.record(risk);
+        }
+    }
+}

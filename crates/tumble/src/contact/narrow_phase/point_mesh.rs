@@ -1,0 +1,158 @@
+//! Particles, or spheres about them, of one body and the closed mesh of another.
+
+use fearless_simd::Simd;
+use glam::DVec3;
+
+use super::lane_filler::LaneFiller;
+use super::pair_poses::{PairPoses, PointGeometry};
+use crate::contact::chunk_contacts::Candidate;
+use crate::contact::mesh_cache::{BLOCK, MeshCache, RelativePose};
+use crate::contact::pair::{Pair, Point};
+use crate::contact::pose::BodyPose;
+use crate::contact::tunnelling::TunnellingRisk;
+use crate::{BodyModel, ContactKind, SignedDistance};
+
+/// The neighbour list of a chunk.
+pub(super) struct Neighbours<'a> {
+    pub pairs: &'a mut [Pair],
+    pub points: &'a mut [Point],
+    pub mesh_cache: &'a mut MeshCache,
+}
+
+/// Finds the particles of the pair with index `index` that touch the mesh; returns until when the pair is clear (m of path
+/// lengths).
+#[inline(always)]
+pub(super) fn detect<S: Simd, const PREDICT: bool>(
+    simd: S,
+    filler: &mut LaneFiller,
+    poses: &PairPoses,
+    index: usize,
+    neighbours: Neighbours,
+) -> f64 {
+    let Neighbours { pairs, points, mesh_cache } = neighbours;
+    let pair = &{ pairs[index] };
+    let is_fast = poses.step_displacement > pair.tunnelling_limit;
+    let (particles, mesh) = particles_and_mesh(poses, pair);
+    let relative_pose = RelativePose::new(particles.0, particles.1, mesh.1);
+    let (path, until) = mesh_cache.advance(pair.cache, &relative_pose, poses.path);
+    if path < until && !is_fast {
+        return poses.path + (until - path);
+    }
+    let in_contacts = filler.begin_pair::<PREDICT>(index, pair);
+    let margin =
+        if is_fast { pair.search_margin.max(poses.step_displacement) } else { pair.search_margin };
+    let mut query =
+        MeshQuery { pair, particles, mesh, mesh_cache, needs_distance: is_fast, margin };
+    let mut clear_until = f64::INFINITY;
+    for (block, start) in (pair.start..pair.end).step_by(BLOCK).enumerate() {
+        let mut block_clear_until = *query.mesh_cache.block_clear_until(pair.cache, block);
+        if path >= block_clear_until || is_fast {
+            block_clear_until = f64::INFINITY;
+            for point_index in start..pair.end.min(start + BLOCK as u32) {
+                let point = &mut points[point_index as usize];
+                let mut is_full = false;
+                if path >= point.clear_until || poses.may_tunnel(pair, path, point.clear_until) {
+                    match query.geometry(point) {
+                        Ok(geometry) => {
+                            point.clear_until = 0.0;
+                            let candidate = Candidate { pair: in_contacts, point: point_index };
+                            is_full = filler.push(poses, pair, candidate, geometry, point);
+                        }
+                        Err(gap) => point.clear_until = path + gap,
+                    }
+                    if poses.may_tunnel(pair, path, point.clear_until) {
+                        let (model, displacement) = (poses.model, poses.step_displacement);
+                        let risk = TunnellingRisk::new(model, index, pair, point, displacement);
+                        filler.contacts.record(risk);
+                    }
+                }
+                block_clear_until = block_clear_until.min(point.clear_until);
+                if is_full {
+                    filler.flush::<S, PREDICT>(simd, pairs, points);
+                }
+            }
+            *query.mesh_cache.block_clear_until(pair.cache, block) = block_clear_until;
+        }
+        clear_until = clear_until.min(block_clear_until);
+    }
+    *query.mesh_cache.pair_clear_until(pair.cache) = clear_until;
+    poses.path + (clear_until - path)
+}
+
+type PosedBody<'a> = (&'a BodyModel, &'a BodyPose);
+
+/// The body whose particles touch, and the body whose mesh they touch.
+fn particles_and_mesh<'a>(poses: &PairPoses<'a>, pair: &Pair) -> (PosedBody<'a>, PosedBody<'a>) {
+    let body = |index: u32| &*poses.model.bodies[index as usize];
+    let (a, b) = ((body(pair.first), poses.first), (body(pair.second), poses.second));
+    if pair.kind == ContactKind::PointMesh { (a, b) } else { (b, a) }
+}
+
+/// Distance queries of the particles of one body against the mesh of another.
+struct MeshQuery<'a> {
+    pair: &'a Pair,
+    particles: PosedBody<'a>,
+    mesh: PosedBody<'a>,
+    mesh_cache: &'a mut MeshCache,
+    /// Whether the distance is needed even of particles that certainly do not touch.
+    needs_distance: bool,
+    /// How far beyond the contact distance the mesh is searched (m).
+    margin: f64,
+}
+
+impl MeshQuery<'_> {
+    /// The geometry of a particle that touches the mesh; otherwise a lower bound on its gap (m).
+    #[inline(always)]
+    fn geometry(&mut self, point: &mut Point) -> Result<PointGeometry, f64> {
+        let (position, outward, depth) = self.contact(point)?;
+        // n is from the second body to the first
+        let is_first = self.pair.kind == ContactKind::PointMesh;
+        let separation = if is_first { outward } else { -outward };
+        Ok(PointGeometry { position, separation, contact_distance: depth })
+    }
+
+    /// Position of the particle, outward normal of the mesh and depth (m) of a contact; otherwise a lower bound on the gap (m).
+    fn contact(&mut self, point: &mut Point) -> Result<(DVec3, DVec3, f64), f64> {
+        let (pair, (body, pose), (mesh_body, mesh_pose)) = (self.pair, self.particles, self.mesh);
+        let Some(signed_distance) = &mesh_body.signed_distance else { return Err(self.margin) };
+        let position = pose.particle_position(body, point.particle);
+        let local = mesh_pose.rotation.transpose() * (position - mesh_pose.position);
+        if !self.needs_distance
+            && let Some(gap) = self.cheap_gap(signed_distance, point, local)
+        {
+            return Err(gap);
+        }
+        let patch = self.mesh_cache.patch_mut(point);
+        let nearest = signed_distance.query_near(local, patch, pair.contact_distance + self.margin);
+        let Some(nearest) = nearest else { return Err(self.margin) };
+        let depth = pair.contact_distance - nearest.distance;
+        if depth <= 0.0 {
+            return Err(-depth);
+        }
+        let outward = mesh_pose.rotation * nearest.gradient;
+        Ok((position, outward, depth))
+    }
+
+    /// A lower bound on the gap (m) without a search, if it proves that the particle does not touch.
+    #[inline(always)]
+    fn cheap_gap(
+        &self,
+        signed_distance: &SignedDistance,
+        point: &Point,
+        local: DVec3,
+    ) -> Option<f64> {
+        let contact_distance = self.pair.contact_distance;
+        if let Some(patch) = self.mesh_cache.patch(point) {
+            let gap = patch.at_least(local) - contact_distance;
+            if gap > 0.0 {
+                return Some(gap);
+            }
+            // a particle that touched in the step before most likely still does
+            if point.clear_until == 0.0 {
+                return None;
+            }
+        }
+        let gap = signed_distance.at_least(local) - contact_distance;
+        (gap > 0.0).then_some(gap)
+    }
+}

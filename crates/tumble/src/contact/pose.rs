@@ -1,0 +1,122 @@
+//! Poses of bodies for contact between bodies, with bounds on how far they have moved.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use crate::{BodyModel, BodyState, Integrator, Model, Motion};
+
+/// Pose of a body, the velocities that its contact forces see, and how far it has moved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BodyPose {
+    pub position: DVec3,
+    /// Orientation as a matrix.
+    pub rotation: DMat3,
+    pub velocity: DVec3,
+    pub angular_velocity: DVec3,
+    /// Velocity in the middle of the flight since the latest kick.
+    pub drift_velocity: DVec3,
+    /// Angular velocity in the middle of the flight since the latest kick.
+    pub drift_angular_velocity: DVec3,
+    /// Velocity of the surface along itself, as of a conveyor belt (m/s, world axes).
+    pub surface_velocity: DVec3,
+    orientation: DQuat,
+    /// Path length: an upper bound on how far any point of the body has moved since its pose was first known (m).
+    pub path: f64,
+    /// How far the body may move before the neighbour lists are rebuilt (m).
+    pub skin: f64,
+    /// Path length up to which the neighbour lists hold (m).
+    pub list_valid_until: f64,
+    /// An upper bound on how far any point of the body moves in one step (m).
+    pub step_displacement: f64,
+}
+
+/// Stands for a wall as the second body of a pair.
+static WALL: BodyPose = BodyPose {
+    position: DVec3::ZERO,
+    rotation: DMat3::ZERO,
+    velocity: DVec3::ZERO,
+    angular_velocity: DVec3::ZERO,
+    drift_velocity: DVec3::ZERO,
+    drift_angular_velocity: DVec3::ZERO,
+    surface_velocity: DVec3::ZERO,
+    orientation: DQuat::IDENTITY,
+    path: 0.0,
+    skin: 0.0,
+    list_valid_until: 0.0,
+    step_displacement: 0.0,
+};
+
+/// The pose of a body, or that of a wall where `index` is no body.
+#[inline(always)]
+pub(super) fn pose_or_wall(poses: &[BodyPose], index: u32) -> &BodyPose {
+    poses.get(index as usize).unwrap_or(&WALL)
+}
+
+impl BodyPose {
+    /// The pose of a state; its path length begins here.
+    pub fn new(model: &Model, index: usize, state: &BodyState) -> Self {
+        let body = &model.bodies[index];
+        let rotation = DMat3::from_quat(state.orientation);
+        let surface_velocity = match &body.motion {
+            Motion::Prescribed(prescribed) => rotation * prescribed.surface_velocity,
+            Motion::Free => DVec3::ZERO,
+        };
+        let omega = body.angular_velocity(rotation, state.angular_momentum);
+        let (mut drift_velocity, mut drift_angular_velocity) = (state.velocity, omega);
+        // under `splitting` the latest flight took a whole step, with v' = g − γ v and, without drag, ω' = −I⁻¹ (ω × L)
+        if model.integrator == Integrator::Splitting && body.is_free() {
+            let half = 0.5 * model.dt;
+            let rate = model.velocity_damping_stiffness / body.particle_mass();
+            drift_velocity -= (model.gravity - state.velocity * rate) * half;
+            let gyroscopic = omega.cross(state.angular_momentum);
+            // zero for isotropic inertia
+            if gyroscopic != DVec3::ZERO {
+                drift_angular_velocity += body.angular_velocity(rotation, gyroscopic) * half;
+            }
+        }
+        Self {
+            drift_velocity,
+            drift_angular_velocity,
+            position: state.position,
+            rotation,
+            velocity: state.velocity,
+            angular_velocity: omega,
+            surface_velocity,
+            orientation: state.orientation,
+            path: rounding_bound(body, state),
+            skin: 0.0,
+            list_valid_until: 0.0,
+            step_displacement: model.dt * (length(state.velocity) + length(omega) * body.extent),
+        }
+    }
+
+    /// The pose of a later state; the path length grows by the displacement.
+    pub fn moved(&self, model: &Model, index: usize, state: &BodyState) -> Self {
+        let body = &model.bodies[index];
+        let turn = state.orientation * self.orientation.conjugate();
+        // a rotation by θ moves a point at distance r by 2 r sin(θ/2)
+        let displacement = length(state.position - self.position)
+            + 2.0 * body.extent * length(DVec3::new(turn.x, turn.y, turn.z));
+        // rounding may hide a part of the displacement, and of the distances that it is compared with
+        let path = self.path + displacement * (1.0 + 1e-9) + rounding_bound(body, state);
+        let path = path * (1.0 + 4.0 * f64::EPSILON);
+        let (skin, list_valid_until) = (self.skin, self.list_valid_until);
+        Self { path, skin, list_valid_until, ..Self::new(model, index, state) }
+    }
+
+    /// Position of a particle (m, world axes).
+    #[inline(always)]
+    pub fn particle_position(&self, body: &BodyModel, slot: u32) -> DVec3 {
+        self.position + self.rotation * body.shape.particles().at(slot)
+    }
+}
+
+/// A bound on the rounding error of the position of a point of a body (m).
+fn rounding_bound(body: &BodyModel, state: &BodyState) -> f64 {
+    16.0 * f64::EPSILON * (state.position.length() + body.extent)
+}
+
+/// |v|, with the square root inlined.
+#[inline(always)]
+fn length(v: DVec3) -> f64 {
+    v.length_squared().sqrt()
+}

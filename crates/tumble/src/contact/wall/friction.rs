@@ -1,0 +1,384 @@
+//! Wall contacts with friction: each particle has a tangential spring of its own, held at an anchor.
+//!
+//! [`FrictionContacts::detect`] lists the particles behind walls and the springs they had; [`FrictionContacts::add_forces`]
+//! computes their forces, eight contacts at a time, once for each set of velocities; [`FrictionContacts::store_springs`] writes the
+//! springs that persist.
+
+use std::cmp::Ordering;
+
+use fearless_simd::{Simd, dispatch, f64x8, prelude::*};
+use glam::DVec3;
+
+use super::near_wall::NearWall;
+use crate::contact::law::coulomb::dashpot_part;
+use crate::contact::law::linear::LinearSpringDashpot;
+use crate::contact::law::{NormalForce, NormalLaw};
+use crate::kinematics::Kinematics;
+use crate::lanes::{Columns, LANES, Vec3x8, largest, set, sum, vector};
+use crate::{BodyForces, ContactLaw, FrictionSpring, Model, Particles, Wrench};
+
+/// The contacts of one body with walls that have friction.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FrictionContacts {
+    /// Buffer for the slots of the particles behind one wall.
+    slots: Vec<u32>,
+    /// The contacts, wall by wall, each wall's in the order of the slots.
+    contacts: Vec<WallContactLanes>,
+    /// Energy (J) of the springs whose particles have left the wall.
+    released: f64,
+    /// Energy (J) that the latest evaluation loses to slip.
+    slip_loss: f64,
+}
+
+/// Up to eight contacts with one wall, one a lane. Lanes without a contact have depth zero.
+#[derive(Clone, Debug, Default)]
+struct WallContactLanes {
+    wall: u32,
+    count: u32,
+    particle: [u32; LANES],
+    /// Depth δ (m).
+    depth: [f64; LANES],
+    /// From the centre of mass to the particle, R r (m).
+    arm: Columns,
+    /// Anchor of the spring before this step (m).
+    anchor: Columns,
+    /// Stretch of the spring at the latest kick (m).
+    old_stretch: Columns,
+    /// Stretch that the friction limit allows (m).
+    stretch: Columns,
+    /// Whether the contact slips, a bit a lane.
+    slips: u64,
+}
+
+impl FrictionContacts {
+    /// Lists the contacts of a body with walls that have friction. `old` are its springs so far.
+    pub fn detect(&mut self, model: &Model, kinematics: &Kinematics, old: &[FrictionSpring]) {
+        self.contacts.clear();
+        self.released = 0.0;
+        if !kinematics.body.has_friction && old.is_empty() {
+            return;
+        }
+        let mut springs = OldSprings { kinematics, model, old, released: 0.0 };
+        let particles = kinematics.body.shape.particles();
+        for (index, (wall, law)) in model.walls.iter().zip(&kinematics.body.contacts).enumerate() {
+            let near = NearWall::new(wall, kinematics).filter(|_| law.friction > 0.0);
+            let Some(near) = near else { continue };
+            self.slots.clear();
+            particles.list_positive(kinematics.level, &near.depth, &mut self.slots);
+            let (slots, contacts) = (&self.slots, &mut self.contacts);
+            dispatch!(kinematics.level, simd => springs.load(simd, index as u32, &near, slots, contacts));
+        }
+        springs.release_all();
+        self.released = springs.released;
+    }
+
+    /// Adds the forces of all contacts at the velocities of `kinematics`.
+    pub fn add_forces(&mut self, model: &Model, kinematics: &Kinematics, forces: &mut BodyForces) {
+        self.slip_loss = 0.0;
+        for lanes in self.contacts.chunk_by_mut(|a, b| a.wall == b.wall) {
+            let wall = lanes[0].wall as usize;
+            let (normal, law) = (model.walls[wall].normal, kinematics.body.contacts[wall]);
+            let evaluation = WallEvaluation { kinematics, normal, law };
+            dispatch!(kinematics.level, simd => evaluation.add_all(simd, lanes, forces, &mut self.slip_loss));
+        }
+        forces.slip_loss = self.released + self.slip_loss;
+    }
+
+    /// Appends the springs after the latest evaluation.
+    pub fn store_springs(&self, kinematics: &Kinematics, springs: &mut Vec<FrictionSpring>) {
+        for lanes in &self.contacts {
+            for lane in 0..lanes.count as usize {
+                let stretch = vector(&lanes.stretch, lane);
+                // the anchor of a sticking contact keeps its bits
+                let anchor = if lanes.slips >> lane & 1 == 1 {
+                    kinematics.position + vector(&lanes.arm, lane) - stretch
+                } else {
+                    vector(&lanes.anchor, lane)
+                };
+                let particle = lanes.particle[lane];
+                springs.push(FrictionSpring { wall: lanes.wall, particle, anchor, stretch });
+            }
+        }
+    }
+}
+
+/// Vector from the anchor of a friction spring to its particle, along the wall (m).
+fn stretch(model: &Model, kinematics: &Kinematics, spring: &FrictionSpring) -> DVec3 {
+    let particles = kinematics.body.shape.particles();
+    let arm = kinematics.rotation * particles.get(spring.particle as usize);
+    let normal = model.walls[spring.wall as usize].normal;
+    let stretch = kinematics.position + arm - spring.anchor;
+    stretch - normal * stretch.dot(normal)
+}
+
+/// Energy in one friction spring (J).
+pub(super) fn energy(model: &Model, kinematics: &Kinematics, spring: &FrictionSpring) -> f64 {
+    let stiffness = kinematics.body.contacts[spring.wall as usize].friction_spring;
+    let weight = kinematics.body.shape.particles().weight(spring.particle as usize);
+    0.5 * stiffness * stretch(model, kinematics, spring).length_squared() * weight
+}
+
+impl WallContactLanes {
+    /// Weights of the particles; lanes without a contact have no force to weight.
+    fn weights(&self, particles: &Particles) -> [f64; LANES] {
+        let mut weights = [0.0; LANES];
+        for (weight, &particle) in weights.iter_mut().zip(&self.particle[..self.count as usize]) {
+            *weight = particles.weight(particle as usize);
+        }
+        weights
+    }
+}
+
+/// The springs of the previous step, sorted by wall and slot, those already matched taken off the front.
+struct OldSprings<'a> {
+    kinematics: &'a Kinematics<'a>,
+    model: &'a Model,
+    old: &'a [FrictionSpring],
+    released: f64,
+}
+
+impl OldSprings<'_> {
+    /// Appends the contacts of the particles in `slots` with one wall, with the springs that they had.
+    #[inline(always)]
+    fn load<S: Simd>(
+        &mut self,
+        simd: S,
+        wall: u32,
+        near: &NearWall,
+        slots: &[u32],
+        contacts: &mut Vec<WallContactLanes>,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for slots in slots.chunks(LANES) {
+                    let count = slots.len() as u32;
+                    let mut lanes = WallContactLanes { wall, count, ..WallContactLanes::default() };
+                    self.compute_geometry(simd, near, slots, &mut lanes);
+                    for (lane, &slot) in slots.iter().enumerate() {
+                        if let Some(old) = self.take(wall, slot, lanes.particle[lane]) {
+                            set(&mut lanes.anchor, lane, old.anchor);
+                            set(&mut lanes.old_stretch, lane, old.stretch);
+                        }
+                    }
+                    contacts.push(lanes);
+                }
+            },
+        );
+    }
+
+    /// Arms and depths of the particles, and an anchor at each of them.
+    #[inline(always)]
+    fn compute_geometry<S: Simd>(
+        &self,
+        simd: S,
+        near: &NearWall,
+        slots: &[u32],
+        lanes: &mut WallContactLanes,
+    ) {
+        let (kinematics, particles) = (self.kinematics, self.kinematics.body.shape.particles());
+        for (lane, &slot) in slots.iter().enumerate() {
+            set(&mut lanes.arm, lane, particles.at(slot));
+            lanes.particle[lane] = particles.index_in(slot);
+        }
+        let r = Vec3x8::load(simd, &lanes.arm);
+        let slope = Vec3x8::splat(simd, near.depth.slope);
+        lanes.depth = (f64x8::splat(simd, near.depth.offset) - slope.dot(r)).into();
+        lanes.depth[slots.len()..].fill(0.0);
+        let arm = r.turned(simd, kinematics.rotation);
+        lanes.arm = arm.store();
+        lanes.anchor = (Vec3x8::splat(simd, kinematics.position) + arm).store();
+    }
+
+    /// The spring that this contact had; springs that sort before it are released.
+    fn take(&mut self, wall: u32, slot: u32, particle: u32) -> Option<FrictionSpring> {
+        while let Some((first, rest)) = self.old.split_first() {
+            if (first.wall, first.particle) == (wall, particle) {
+                self.old = rest;
+                return Some(*first);
+            }
+            let first_slot = self.kinematics.body.shape.particles().slot_of(first.particle);
+            if (first.wall, first_slot).cmp(&(wall, slot)) == Ordering::Greater {
+                return None;
+            }
+            self.release(first);
+            self.old = rest;
+        }
+        None
+    }
+
+    /// Releases all springs that no contact has taken.
+    fn release_all(&mut self) {
+        for spring in std::mem::take(&mut self.old) {
+            self.release(spring);
+        }
+    }
+
+    /// Counts the energy of a spring whose particle has left the wall as lost to slip.
+    fn release(&mut self, spring: &FrictionSpring) {
+        let law = &self.kinematics.body.contacts[spring.wall as usize];
+        let stretch = stretch(self.model, self.kinematics, spring);
+        let weight = self.kinematics.body.shape.particles().weight(spring.particle as usize);
+        self.released += 0.5 * law.friction_spring * spring.stretch.dot(stretch) * weight;
+    }
+}
+
+/// Evaluation of the contacts of a body with one wall.
+struct WallEvaluation<'a> {
+    kinematics: &'a Kinematics<'a>,
+    normal: DVec3,
+    law: ContactLaw,
+}
+
+/// Weights of the particles of eight contacts; no multiplication where all particles weigh the same.
+struct Weights<S: Simd, const WEIGHTED: bool>(f64x8<S>);
+
+impl<S: Simd, const WEIGHTED: bool> Weights<S, WEIGHTED> {
+    #[inline(always)]
+    fn scale(&self, lanes: f64x8<S>) -> f64x8<S> {
+        if WEIGHTED { lanes * self.0 } else { lanes }
+    }
+
+    #[inline(always)]
+    fn scale_vector(&self, lanes: Vec3x8<S>) -> Vec3x8<S> {
+        if WEIGHTED { lanes * self.0 } else { lanes }
+    }
+}
+
+/// Sums over the contacts, lane by lane.
+struct LaneSums<S: Simd> {
+    spring: f64x8<S>,
+    spring_arm: Vec3x8<S>,
+    normal: f64x8<S>,
+    normal_arm: Vec3x8<S>,
+    friction: Vec3x8<S>,
+    friction_torque: Vec3x8<S>,
+    dashpot: Vec3x8<S>,
+    dashpot_torque: Vec3x8<S>,
+    slip_loss: f64x8<S>,
+    max_depth: f64x8<S>,
+}
+
+impl WallEvaluation<'_> {
+    #[inline(always)]
+    fn add_all<S: Simd>(
+        &self,
+        simd: S,
+        contacts: &mut [WallContactLanes],
+        forces: &mut BodyForces,
+        slip_loss: &mut f64,
+    ) {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut sums = LaneSums::zero(simd);
+                let particles = self.kinematics.body.shape.particles();
+                if particles.is_weighted() {
+                    for lanes in contacts {
+                        let weights = lanes.weights(particles);
+                        self.add_lanes::<S, true>(simd, lanes, weights, &mut sums);
+                    }
+                } else {
+                    for lanes in contacts {
+                        self.add_lanes::<S, false>(simd, lanes, [1.0; LANES], &mut sums);
+                    }
+                }
+                *slip_loss += sum(sums.slip_loss);
+                sums.add_to(self.normal, forces);
+            },
+        );
+    }
+
+    /// Every force of a particle of weight w is w times that of a particle of weight 1, and so is the friction limit:
+    /// whether a contact slips does not depend on w.
+    #[inline(always)]
+    fn add_lanes<S: Simd, const WEIGHTED: bool>(
+        &self,
+        simd: S,
+        lanes: &mut WallContactLanes,
+        weights: [f64; LANES],
+        sums: &mut LaneSums<S>,
+    ) {
+        let (kinematics, law) = (self.kinematics, &self.law);
+        let weights = Weights::<S, WEIGHTED>(f64x8::simd_from(simd, weights));
+        let n = Vec3x8::splat(simd, self.normal);
+        let arm = Vec3x8::load(simd, &lanes.arm);
+        let depth = f64x8::simd_from(simd, lanes.depth);
+        let u = Vec3x8::splat(simd, kinematics.velocity)
+            + Vec3x8::splat(simd, kinematics.angular_velocity).cross(arm);
+
+        // normal force
+        let normal_law = LinearSpringDashpot {
+            stiffness: f64x8::splat(simd, law.stiffness),
+            damping: f64x8::splat(simd, law.damping),
+        };
+        let NormalForce { spring, total: normal } = normal_law.force(simd, depth, u.dot(n));
+        let (weighted_spring, weighted_normal) = (weights.scale(spring), weights.scale(normal));
+        sums.spring += weighted_spring;
+        sums.spring_arm += arm * weighted_spring;
+        sums.normal += weighted_normal;
+        sums.normal_arm += arm * weighted_normal;
+        sums.max_depth = sums.max_depth.simd_gt(depth).select(sums.max_depth, depth);
+
+        // tangential spring to the anchor, cut to the friction limit
+        let limit = normal * law.friction;
+        let position = Vec3x8::splat(simd, kinematics.position) + arm;
+        let stretch = (position - Vec3x8::load(simd, &lanes.anchor)).across(n);
+        let tension = stretch.dot(stretch).sqrt() * law.friction_spring;
+        let slips = tension.simd_gt(limit);
+        let kept = slips.select(limit / tension, f64x8::splat(simd, 1.0));
+        let held = stretch * kept;
+        let lost = (Vec3x8::load(simd, &lanes.old_stretch) + held).dot(stretch - held);
+        sums.slip_loss += weights.scale(lost * (0.5 * law.friction_spring));
+        let friction = held * f64x8::splat(simd, -law.friction_spring);
+        let weighted_friction = weights.scale_vector(friction);
+        sums.friction += weighted_friction;
+        sums.friction_torque += arm.cross(weighted_friction);
+        lanes.stretch = held.store();
+        lanes.slips = slips.to_bitmask();
+
+        // tangential dashpot, within what the spring leaves of the limit
+        let dashpot = u.across(n) * f64x8::splat(simd, -law.friction_damping);
+        let dashpot = weights.scale_vector(dashpot * dashpot_part(simd, friction, dashpot, limit));
+        sums.dashpot += dashpot;
+        sums.dashpot_torque += arm.cross(dashpot);
+    }
+}
+
+impl<S: Simd> LaneSums<S> {
+    #[inline(always)]
+    fn zero(simd: S) -> Self {
+        let zero = f64x8::splat(simd, 0.0);
+        let zeros = Vec3x8::splat(simd, DVec3::ZERO);
+        Self {
+            spring: zero,
+            spring_arm: zeros,
+            normal: zero,
+            normal_arm: zeros,
+            friction: zeros,
+            friction_torque: zeros,
+            dashpot: zeros,
+            dashpot_torque: zeros,
+            slip_loss: zero,
+            max_depth: zero,
+        }
+    }
+
+    /// Adds the sums over all lanes to the forces of a body.
+    #[inline(always)]
+    fn add_to(&self, normal: DVec3, forces: &mut BodyForces) {
+        let spring = normal_wrench(normal, sum(self.spring), self.spring_arm.sum());
+        let total = normal_wrench(normal, sum(self.normal), self.normal_arm.sum());
+        forces.spring += spring;
+        forces.dashpot += total - spring;
+        forces.dashpot += Wrench { force: self.dashpot.sum(), torque: self.dashpot_torque.sum() };
+        forces.friction +=
+            Wrench { force: self.friction.sum(), torque: self.friction_torque.sum() };
+        forces.max_depth = forces.max_depth.max(largest(self.max_depth));
+    }
+}
+
+/// Wrench of forces f n at arms a, from Σ f and Σ f a.
+fn normal_wrench(normal: DVec3, sum: f64, arm: DVec3) -> Wrench {
+    Wrench { force: normal * sum, torque: arm.cross(normal) }
+}

@@ -1,0 +1,98 @@
+//! Contact of particles with walls.
+//!
+//! Normal direction: a spring k δ and a dashpot c_n, whose sum never pulls. Tangential direction: a spring k_t between the
+//! particle and its anchor, the point of the wall where it arrived, and a dashpot c_t, together at most μ times the normal
+//! force (P. A. Cundall & O. D. L. Strack, Géotechnique 29 (1979) 47). Where the spring alone would exceed that limit, the
+//! anchor slips.
+//!
+//! Normal forces are linear in position, so the particle tree sums them without visiting each particle
+//! ([`frictionless`]). Friction has a history, so its particles are listed and visited ([`friction`]).
+
+mod friction;
+mod frictionless;
+mod near_wall;
+#[cfg(test)]
+mod tests;
+
+use self::frictionless::NormalSprings;
+use self::near_wall::NearWall;
+use crate::kinematics::Kinematics;
+use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, WallPlane};
+
+pub(crate) use self::friction::FrictionContacts;
+
+/// Where the results of [`wall_contact_forces`] go.
+pub(crate) struct WallContactOutput<'a> {
+    /// Forces on the body.
+    pub forces: &'a mut BodyForces,
+    /// Friction springs after this evaluation.
+    pub next_springs: &'a mut Vec<FrictionSpring>,
+    /// Buffer for the contacts that have friction.
+    pub friction_contacts: &'a mut FrictionContacts,
+}
+
+/// Computes the wall contact forces on one body, for a kick over the time `h` (s); `springs` are its friction springs so far.
+pub(crate) fn wall_contact_forces(
+    model: &Model,
+    body: &BodyModel,
+    state: &BodyState,
+    springs: &[FrictionSpring],
+    output: WallContactOutput,
+    h: f64,
+) {
+    let WallContactOutput { forces, next_springs, friction_contacts } = output;
+    forces.clear_contact();
+    next_springs.clear();
+    let is_far = |wall: &WallPlane| wall.depth(state.position) < -body.bounding_radius();
+    if springs.is_empty() && model.walls.iter().all(is_far) {
+        return;
+    }
+    let kinematics = Kinematics::new(body, state);
+    let normal_springs = NormalSprings::new(model, &kinematics);
+    friction_contacts.detect(model, &kinematics, springs);
+    evaluate(model, &kinematics, &normal_springs, forces, friction_contacts);
+    if h != 0.0 && forces.max_depth > 0.0 && body.is_damped {
+        // a second evaluation at the mid-kick velocities of the first makes dashpots second order
+        let mid_kick = kinematics.at_mid_kick(&forces.contact(), h);
+        evaluate(model, &mid_kick, &normal_springs, forces, friction_contacts);
+    }
+    friction_contacts.store_springs(&kinematics, next_springs);
+}
+
+/// Sets the forces of all contacts at the velocities of `kinematics`.
+fn evaluate(
+    model: &Model,
+    kinematics: &Kinematics,
+    normal_springs: &NormalSprings,
+    forces: &mut BodyForces,
+    friction_contacts: &mut FrictionContacts,
+) {
+    forces.clear_contact();
+    forces.spring = normal_springs.all;
+    forces.dashpot = normal_springs.dashpots(model, kinematics);
+    forces.max_depth = normal_springs.max_depth;
+    friction_contacts.add_forces(model, kinematics, forces);
+}
+
+/// Energy in the wall contact springs of one body, normal and tangential (J).
+pub(crate) fn elastic_energy(
+    model: &Model,
+    kinematics: &Kinematics,
+    springs: &[FrictionSpring],
+) -> f64 {
+    let mut energy = 0.0;
+    for (wall, law) in model.walls.iter().zip(&kinematics.body.contacts) {
+        if let Some(near) = NearWall::new(wall, kinematics) {
+            energy += 0.5 * law.stiffness * near.depth_sums(kinematics).squares;
+        }
+    }
+    let tangential = springs.iter().map(|spring| friction::energy(model, kinematics, spring));
+    energy + tangential.sum::<f64>()
+}
+
+/// Depth of the deepest particle behind a wall (m); 0 where none is behind it.
+pub(crate) fn depth_behind(kinematics: &Kinematics, wall: &WallPlane) -> f64 {
+    let particles = kinematics.body.shape.particles();
+    NearWall::new(wall, kinematics)
+        .map_or(0.0, |near| particles.largest(kinematics.level, &near.depth))
+}

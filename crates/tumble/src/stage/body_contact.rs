@@ -1,0 +1,63 @@
+//! Contact between bodies, and of spheres with walls: where bodies of different batches act on each other.
+
+use std::sync::Arc;
+
+use crate::contact::gather;
+use crate::{Batch, BodyModel, Integrator, Model, Scratch, State, for_each_batch, parallel};
+
+/// Runs the stages `before` on all batches, computes the contact forces between bodies, and runs the stages `after`.
+///
+/// [`contact`](crate::contact) describes the pipeline. Where no two bodies can touch, every batch goes through both groups
+/// of stages at once.
+pub fn around_body_contact(
+    model: &Model,
+    state: &mut State,
+    scratch: &mut Scratch,
+    before: impl Fn(&mut Batch) + Sync,
+    after: impl Fn(&mut Batch) + Sync,
+) {
+    if !model.has_body_contact {
+        return for_each_batch(model, state, scratch, |batch| {
+            before(batch);
+            after(batch);
+        });
+    }
+    for_each_batch(model, state, scratch, |batch| {
+        before(batch);
+        let Batch { model, first, bodies, poses, .. } = batch;
+        gather::update_poses(model, *first, poses, bodies);
+    });
+    contact_forces(model, state, scratch);
+    for_each_batch(model, state, scratch, |batch| {
+        let Batch { first, forces, contact_results, .. } = batch;
+        gather::gather_forces(*contact_results, *first, forces);
+        after(batch);
+    });
+    scratch.body_contacts.store_friction_springs(&mut state.pair_springs);
+}
+
+/// Neighbour lists, narrow phase and contact forces, for a kick over the time step.
+///
+/// Under `splitting`, dashpots see the mean of the velocities before and after the kick: a first evaluation predicts these,
+/// a second one uses them. Under `euler`, dashpots see the velocities as they are.
+fn contact_forces(model: &Model, state: &mut State, scratch: &mut Scratch) {
+    let h = model.dt;
+    let contacts = &mut scratch.body_contacts;
+    contacts.update_neighbour_lists(model, state);
+    // spheres at walls have the damping of their wall contacts
+    let is_damped = |body: &Arc<BodyModel>| {
+        body.pair_material.is_damped() || (body.has_spheres() && body.is_damped)
+    };
+    if model.integrator != Integrator::Splitting || !model.bodies.iter().any(is_damped) {
+        contacts.evaluate::<false>(model, &state.pair_springs, h);
+    } else if parallel::is_single_threaded() {
+        contacts.predict_and_evaluate(model, &state.pair_springs, &scratch.forces, h);
+    } else {
+        contacts.evaluate::<true>(model, &state.pair_springs, h);
+        for_each_batch(model, state, scratch, |batch| {
+            let Batch { model, first, poses, forces, contact_results, .. } = batch;
+            gather::predict_velocities(model, *first, poses, forces, *contact_results, h);
+        });
+        scratch.body_contacts.evaluate_again();
+    }
+}

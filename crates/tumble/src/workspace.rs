@@ -1,0 +1,27 @@
+//! Buffers for one batch of bodies.
+
+use crate::contact::wall::FrictionContacts;
+use crate::{FrictionSpring, RunTotals};
+
+/// Buffers for one batch of bodies, and what the batch reports at the end of a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Workspace {
+    /// Contacts of one body with walls that have friction.
+    pub friction_contacts: FrictionContacts,
+    /// Friction springs of one body at the beginning of a sub-step.
+    pub saved_springs: Vec<FrictionSpring>,
+    /// What the batch adds to the totals of the run.
+    pub totals: RunTotals,
+    /// The first body of the batch that failed a check, by index.
+    pub failure: Option<(usize, Failure)>,
+}
+
+/// A failed check of one body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Failure {
+    pub quantity: &'static str,
+    pub value: f64,
+    pub particle: Option<usize>,
+    /// The largest value that is accepted, where there is one.
+    pub limit: Option<f64>,
+}
