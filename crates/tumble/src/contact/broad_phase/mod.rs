@@ -1,12 +1,11 @@
-//! Which balls overlap: the broad phase, on a grid for each size of ball.
+//! Broad phase: which bounding balls overlap, by a hierarchical grid.
 //!
-//! Balls are sorted into levels by their radius, a factor of two each, and every level has cells wider than two of its
-//! largest balls ([`level`]). So a ball finds all partners of its own level in its own cell and the 26 around it, of
-//! which it visits one half: the other half finds it. Each ball also looks into every coarser level, where its radius
-//! and the level's largest cover at most three cells an axis; finer levels find it. A drum among gravel costs each
-//! grain one look, whatever the ratio of their sizes.
+//! Balls are sorted into levels by radius, one level for each factor of two. The cells of a level are wider than the diameter
+//! of its largest ball ([`level`]), so all partners of a ball at its own level are in its cell and the 26 cells around it. It
+//! visits one half of these; the other half finds the ball. Each ball also searches every coarser level, where it covers at most
+//! three cells along each axis. A large drum among gravel costs each grain one search, whatever the ratio of sizes.
 //!
-//! Pairs come in the order of their numbers ([`order`]), so the result is the same for any number of threads.
+//! Pairs are sorted by the indices of their balls ([`order`]), so the result is the same for any number of threads.
 
 mod level;
 mod order;
@@ -22,10 +21,10 @@ use level::{Level, Range};
 use order::{FoundPairs, Order};
 use sizes::Sizes;
 
-/// Up to so many balls, each is tested against each: quicker than any grid.
-const FEW: usize = 32;
+/// Up to this number of balls, every pair is tested: faster than any grid.
+const BRUTE_FORCE_COUNT: usize = 32;
 
-/// Balls of one level that one task looks after: a fixed number, whatever the number of threads.
+/// Number of balls of one level in a task; it does not depend on the number of threads.
 const CHUNK: usize = 256;
 
 /// A ball around a body.
@@ -33,91 +32,91 @@ const CHUNK: usize = 256;
 pub(super) struct Ball {
     /// Centre (m), finite.
     pub centre: DVec3,
-    /// Radius (m), finite and not negative: of the body and of whatever skin it wears.
+    /// Radius (m), finite and not negative: of the body and its skin.
     pub radius: f64,
-    /// Whether it can be pushed: of two balls that cannot, no pair is wanted.
+    /// Whether forces move the body; two inactive balls are no pair.
     pub active: bool,
 }
 
-/// Finds pairs of balls that overlap. What it keeps between calls is room, nothing that changes a result.
+/// Finds pairs of balls that overlap. It keeps buffers between calls, and nothing that changes a result.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grid {
     sizes: Sizes,
-    /// Coarsest first; those beyond `level_count` only keep their room.
+    /// Coarsest first; entries from `level_count` on are spare buffers.
     levels: Vec<Level>,
     level_count: usize,
-    /// Those beyond `chunk_count` only keep their room.
+    /// Entries from `chunk_count` on are spare buffers.
     chunks: Vec<Chunk>,
     chunk_count: usize,
     order: Order,
 }
 
-/// Some balls of a level, neighbours in the order of its cells.
+/// Some balls of a level, consecutive in the order of its cells.
 #[derive(Clone, Debug, Default)]
 struct Chunk {
     level: usize,
     balls: std::ops::Range<usize>,
     ranges: Vec<Range>,
-    found: FoundPairs,
+    pairs: FoundPairs,
 }
 
 impl Grid {
     /// All pairs a < b of balls with |x_a − x_b| ≤ r_a + r_b, not both inactive, sorted. Pairs that miss each other
     /// by less than 10⁻¹² of r_a + r_b may be among them, so that rounding loses none. At most 2³² balls.
     pub(super) fn pairs(&mut self, balls: &[Ball]) -> &[[u32; 2]] {
-        if balls.len() <= FEW {
-            return self.order.each_with_each(balls);
+        if balls.len() <= BRUTE_FORCE_COUNT {
+            return self.order.brute_force(balls);
         }
-        self.file(balls);
-        self.cut();
-        self.look();
-        let found = self.chunks[..self.chunk_count].iter().map(|chunk| &chunk.found);
-        self.order.gather(found, balls.len())
+        self.insert(balls);
+        self.divide();
+        self.search();
+        let found = self.chunks[..self.chunk_count].iter().map(|chunk| &chunk.pairs);
+        self.order.sort(found, balls.len())
     }
 
-    /// Files every ball at the level of its size.
-    fn file(&mut self, balls: &[Ball]) {
+    /// Inserts every ball into the level of its size.
+    fn insert(&mut self, balls: &[Ball]) {
         self.level_count = self.sizes.sort(balls);
         if self.levels.len() < self.level_count {
             self.levels.resize_with(self.level_count, Level::default);
         }
         for (index, level) in self.levels[..self.level_count].iter_mut().enumerate() {
-            level.file(balls, self.sizes.of_level(index));
+            level.insert(balls, self.sizes.of_level(index));
         }
     }
 
-    /// Cuts the levels into chunks.
-    fn cut(&mut self) {
+    /// Divides the levels into chunks.
+    fn divide(&mut self) {
         self.chunk_count = 0;
-        for (level, filed) in self.levels[..self.level_count].iter().enumerate() {
-            for start in (0..filed.len()).step_by(CHUNK) {
+        for (level, balls) in self.levels[..self.level_count].iter().enumerate() {
+            for start in (0..balls.len()).step_by(CHUNK) {
                 if self.chunks.len() == self.chunk_count {
                     self.chunks.push(Chunk::default());
                 }
                 let chunk = &mut self.chunks[self.chunk_count];
                 chunk.level = level;
-                chunk.balls = start..filed.len().min(start + CHUNK);
+                chunk.balls = start..balls.len().min(start + CHUNK);
                 self.chunk_count += 1;
             }
         }
     }
 
     /// Finds the pairs of every chunk.
-    fn look(&mut self) {
+    fn search(&mut self) {
         let levels = &self.levels[..self.level_count];
-        self.chunks[..self.chunk_count].par_iter_mut().for_each(|chunk| chunk.look(levels));
+        self.chunks[..self.chunk_count].par_iter_mut().for_each(|chunk| chunk.search(levels));
     }
 }
 
 impl Chunk {
-    /// All pairs of these balls with balls behind them at their level and with those of coarser levels.
-    fn look(&mut self, levels: &[Level]) {
-        let Self { level, balls, ranges, found } = self;
-        found.clear();
+    /// Finds the pairs of these balls with later balls of their level and with the balls of coarser levels.
+    fn search(&mut self, levels: &[Level]) {
+        let Self { level, balls, ranges, pairs } = self;
+        pairs.clear();
         let own = &levels[*level];
-        own.look_around(balls.clone(), ranges, found);
+        own.search_same_level(balls.clone(), ranges, pairs);
         for coarser in &levels[..*level] {
-            coarser.look_up(own, balls.clone(), ranges, found);
+            coarser.search_from_finer(own, balls.clone(), ranges, pairs);
         }
     }
 }

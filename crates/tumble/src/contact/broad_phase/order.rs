@@ -1,4 +1,4 @@
-//! Pairs as they are found, and in the order of their numbers.
+//! Pairs as they are found, and sorted by index.
 
 use super::Ball;
 use super::overlap::{Sphere, overlaps};
@@ -6,24 +6,24 @@ use super::overlap::{Sphere, overlaps};
 /// Pairs a < b as they are found.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FoundPairs {
-    /// Those beyond `count` are room.
+    /// Entries from `count` on are spare.
     pairs: Vec<[u32; 2]>,
     count: usize,
 }
 
 impl FoundPairs {
-    /// Forgets all, keeps the room.
+    /// Removes all pairs and keeps the buffer.
     pub(super) fn clear(&mut self) {
         self.count = 0;
     }
 
-    /// Keeps those of the candidates that are hits. Every candidate is written, hits move on: a branch here is
-    /// guessed wrong as often as a ball has a partner, which costs more than all the rest.
+    /// Adds the candidates that are hits, as pairs with ball `index`. Every candidate is written and only hits advance the end:
+    /// a branch would be mispredicted about once a partner, which costs more than all the rest.
     #[inline(always)]
-    pub(super) fn keep(
+    pub(super) fn add_hits(
         &mut self,
         candidates: impl ExactSizeIterator<Item = (bool, u32)>,
-        number: u32,
+        index: u32,
     ) {
         let end = self.count + candidates.len();
         if self.pairs.len() < end {
@@ -32,32 +32,32 @@ impl FoundPairs {
         let slots = &mut self.pairs[self.count..end];
         let mut count = 0;
         for (hit, other) in candidates {
-            slots[count] = [number.min(other), number.max(other)];
+            slots[count] = [index.min(other), index.max(other)];
             count += usize::from(hit);
         }
         self.count += count;
     }
 
-    /// What was found.
+    /// The pairs.
     fn pairs(&self) -> &[[u32; 2]] {
         &self.pairs[..self.count]
     }
 }
 
-/// The sorted pairs, and room to sort them.
+/// The sorted pairs, with buffers to sort them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Order {
     pairs: Vec<[u32; 2]>,
-    /// First numbers of the pairs, in the order of their second.
+    /// First indices of the pairs, sorted by second index.
     firsts: Vec<u32>,
-    /// Where the pairs of each first number go, and of each second.
+    /// Where the pairs of each first index go, and those of each second index.
     first_starts: Vec<u32>,
     second_starts: Vec<u32>,
 }
 
 impl Order {
-    /// Tests every ball against every other.
-    pub(super) fn each_with_each(&mut self, balls: &[Ball]) -> &[[u32; 2]] {
+    /// Tests every pair of balls.
+    pub(super) fn brute_force(&mut self, balls: &[Ball]) -> &[[u32; 2]] {
         self.pairs.clear();
         let sphere = |ball: &Ball| Sphere { centre: ball.centre, radius: ball.radius };
         for (a, ball) in balls.iter().enumerate() {
@@ -70,9 +70,8 @@ impl Order {
         &self.pairs
     }
 
-    /// Sorts what was found among so many balls: a counting sort by the second number, then one by the first,
-    /// which keeps the order of the second.
-    pub(super) fn gather<'a>(
+    /// Sorts the pairs found among `ball_count` balls: a counting sort by the second index, then a stable one by the first.
+    pub(super) fn sort<'a>(
         &mut self,
         found: impl Iterator<Item = &'a FoundPairs> + Clone,
         ball_count: usize,
@@ -87,8 +86,8 @@ impl Order {
             first_starts[*a as usize] += 1;
             second_starts[*b as usize] += 1;
         }
-        let total = add_up(first_starts);
-        add_up(second_starts);
+        let total = prefix_sum(first_starts);
+        prefix_sum(second_starts);
         firsts.resize(total, 0);
         for found in found {
             for [a, b] in found {
@@ -98,7 +97,7 @@ impl Order {
             }
         }
         pairs.resize(total, [0; 2]);
-        // by now, each start of a second number is its end
+        // by now the start of each second index has advanced to its end
         let mut from = 0;
         for (b, to) in (0..).zip(&*second_starts) {
             for a in &firsts[from..*to as usize] {
@@ -113,7 +112,7 @@ impl Order {
 }
 
 /// Turns counts into starts; returns the sum.
-fn add_up(counts: &mut [u32]) -> usize {
+fn prefix_sum(counts: &mut [u32]) -> usize {
     let mut total = 0;
     for count in counts {
         (*count, total) = (total, total + *count);

@@ -2,13 +2,13 @@
 
 use super::Ball;
 
-/// Classes of radius: the exponent of the double and the first bits of its mantissa.
+/// Size classes of radii: the exponent of the double and the first bits of its mantissa.
 const CLASS_BITS: u32 = 2;
 const CLASS_COUNT: usize = 2048 << CLASS_BITS;
 
-/// More levels than this are never made: each costs every finer ball a look. Sizes that fill 2³² need a level
-/// for more than a factor of two.
-const MOST_LEVELS: usize = 32;
+/// The largest number of levels: each costs every finer ball a search. Sizes that span more than a factor of 2³² get levels for more
+/// than a factor of two.
+const MAX_LEVELS: usize = 32;
 
 /// Balls by level, coarsest first.
 #[derive(Clone, Debug, Default)]
@@ -19,11 +19,11 @@ pub(super) struct Sizes {
     level_of_class: Vec<u8>,
     /// Where each level starts in `order`, and the end.
     starts: Vec<u32>,
-    /// Numbers of the balls, level by level, ascending within each.
+    /// Indices of the balls, level by level, ascending within each.
     order: Vec<u32>,
 }
 
-/// The class of a radius: larger radii have no smaller class.
+/// The size class of a radius; it never decreases where the radius increases.
 fn class(radius: f64) -> usize {
     // adding zero makes a negative zero positive
     ((radius + 0.0).to_bits() >> (52 - CLASS_BITS)) as usize % CLASS_COUNT
@@ -40,19 +40,19 @@ impl Sizes {
             self.classes[class / 64] |= 1 << (class % 64);
         }
         let mut octaves = 1;
-        while self.make_levels(octaves) > MOST_LEVELS {
+        while self.make_levels(octaves) > MAX_LEVELS {
             octaves *= 2;
         }
         self.sort_by_level(balls);
         self.starts.len() - 1
     }
 
-    /// The numbers of the balls of a level, ascending.
+    /// The indices of the balls of a level, ascending.
     pub(super) fn of_level(&self, level: usize) -> &[u32] {
         &self.order[self.starts[level] as usize..self.starts[level + 1] as usize]
     }
 
-    /// Levels from the largest class down, each for so many octaves of radius; returns how many.
+    /// Assigns levels from the largest class down, each spanning `octaves` octaves of radius; returns how many.
     fn make_levels(&mut self, octaves: usize) -> usize {
         let width = octaves << CLASS_BITS;
         let (mut level_count, mut below) = (0, CLASS_COUNT);
@@ -66,7 +66,7 @@ impl Sizes {
                     level_count += 1;
                     below = (class + 1).saturating_sub(width);
                 }
-                // beyond the largest number of levels what is written here is not used
+                // beyond MAX_LEVELS the value is not used
                 self.level_of_class[class] = (level_count - 1) as u8;
             }
         }
@@ -75,7 +75,7 @@ impl Sizes {
         level_count
     }
 
-    /// Counting sort, which keeps the order within a level.
+    /// A counting sort, stable within a level.
     fn sort_by_level(&mut self, balls: &[Ball]) {
         self.order.resize(balls.len(), 0);
         if self.starts.len() == 2 {
@@ -84,7 +84,7 @@ impl Sizes {
             return;
         }
         let level = |ball: &Ball| usize::from(self.level_of_class[class(ball.radius)]);
-        let mut next = [0; MOST_LEVELS];
+        let mut next = [0; MAX_LEVELS];
         balls.iter().for_each(|ball| next[level(ball)] += 1);
         let mut total = 0;
         for (next, start) in next.iter_mut().zip(&mut self.starts[..]) {

@@ -1,24 +1,24 @@
-//! Against every ball with every other.
+//! The grid against brute force.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// Every ball with every other.
-fn brute(balls: &[Ball]) -> Vec<[u32; 2]> {
-    Order::default().each_with_each(balls).to_vec()
+/// All pairs, by testing each.
+fn brute_force(balls: &[Ball]) -> Vec<[u32; 2]> {
+    Order::default().brute_force(balls).to_vec()
 }
 
-/// Checks a grid that is used again and again against brute force.
+/// Checks a grid, which may hold earlier balls, against brute force.
 fn check(grid: &mut Grid, balls: &[Ball]) {
-    assert_eq!(grid.pairs(balls), brute(balls));
+    assert_eq!(grid.pairs(balls), brute_force(balls));
 }
 
 fn ball(centre: DVec3, radius: f64) -> Ball {
     Ball { centre, radius, active: true }
 }
 
-/// Numbers from 0 to 1 that fill space evenly.
+/// Points of the unit cube and numbers from 0 to 1, evenly distributed.
 fn spread(count: usize) -> impl Iterator<Item = (DVec3, f64)> {
     (0..count).map(|i| {
         let even = |factor: f64| (i as f64 * factor).fract();
@@ -27,14 +27,14 @@ fn spread(count: usize) -> impl Iterator<Item = (DVec3, f64)> {
     })
 }
 
-/// Gravel of sizes from 1 to 10, some of which cannot be pushed.
+/// Balls whose sizes span a factor of ten; some are inactive.
 fn gravel(count: usize) -> Vec<Ball> {
-    let filed = |(place, size): (DVec3, f64)| Ball {
+    let grain = |(place, size): (DVec3, f64)| Ball {
         centre: place,
         radius: 0.06 * 10_f64.powf(-size),
         active: size < 0.7,
     };
-    spread(count).map(filed).collect()
+    spread(count).map(grain).collect()
 }
 
 /// A radius of any size from 10⁻⁵ to 1, or none.
@@ -80,7 +80,7 @@ fn any_lattice() -> impl Strategy<Value = Vec<Ball>> {
 
 proptest! {
     #[test]
-    fn pairs_are_those_of_brute_force(first in any_balls(), second in any_balls()) {
+    fn pairs_equal_those_of_brute_force(first in any_balls(), second in any_balls()) {
         let mut grid = Grid::default();
         for balls in [&first, &second, &first] {
             check(&mut grid, balls);
@@ -88,7 +88,7 @@ proptest! {
     }
 
     #[test]
-    fn no_pair_is_missed_on_borders_of_cells(balls in any_lattice()) {
+    fn no_pair_is_missed_on_cell_boundaries(balls in any_lattice()) {
         check(&mut Grid::default(), &balls);
     }
 
@@ -96,7 +96,7 @@ proptest! {
     fn no_pair_is_missed_at_any_magnitude(
         bits in prop::collection::vec((prop::array::uniform3(any::<u64>()), any::<u64>()), 33..100),
     ) {
-        // any bits are a number; what is not finite becomes 1
+        // random bits as numbers; those that are not finite become 1
         let number = |bits: u64| Some(f64::from_bits(bits)).filter(|x| x.is_finite()).unwrap_or(1.0);
         let balls: Vec<Ball> =
             bits.iter().map(|(x, r)| ball(x.map(number).into(), number(*r).abs())).collect();
@@ -105,8 +105,8 @@ proptest! {
 }
 
 #[test]
-fn the_cells_of_an_axis_may_repeat() {
-    // a pile, and bodies that fell out of it: also by whole periods, into cells that look like neighbours
+fn cell_indices_may_repeat() {
+    // a pile, and bodies far away by whole periods, whose cell indices look like neighbours
     let mut balls = gravel(500);
     let largest = balls.iter().map(|ball| ball.radius).fold(0.0, f64::max);
     let width = 2.0 * largest * (1.0 + 1.0 / 256.0) * f64::from(1 << 21);
@@ -119,13 +119,13 @@ fn the_cells_of_an_axis_may_repeat() {
 }
 
 #[test]
-fn partners_are_found_across_the_ends_of_an_axis_that_repeats() {
-    // rows of touching balls that cross the end of the period, along each axis and askew
-    for way in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0)] {
+fn pairs_are_found_across_the_end_of_a_period() {
+    // rows of touching balls that cross the end of the period, along each axis and diagonally
+    for direction in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0)] {
         let period = 2.0 * (1.0 + 1.0 / 256.0) * f64::from(1 << 21);
-        let row = (-40..40).map(|i| ball(way * (period + 1.1 * f64::from(i)), 1.0));
-        let fine = (-40..40).map(|i| ball(way * (period + 1.3 * f64::from(i)), 0.2));
-        let ends = [ball(DVec3::ZERO, 1.0), ball(2.0 * period * way, 1.0)];
+        let row = (-40..40).map(|i| ball(direction * (period + 1.1 * f64::from(i)), 1.0));
+        let fine = (-40..40).map(|i| ball(direction * (period + 1.3 * f64::from(i)), 0.2));
+        let ends = [ball(DVec3::ZERO, 1.0), ball(2.0 * period * direction, 1.0)];
         let balls: Vec<Ball> = row.chain(fine).chain(ends).collect();
         let mut grid = Grid::default();
         check(&mut grid, &balls);
@@ -134,7 +134,7 @@ fn partners_are_found_across_the_ends_of_an_axis_that_repeats() {
 }
 
 #[test]
-fn few_or_no_balls_have_their_pairs_too() {
+fn few_balls_are_handled() {
     let mut grid = Grid::default();
     for count in [0, 1, 2, 31, 32, 33, 34] {
         check(&mut grid, &vec![ball(DVec3::ONE, 1.0); count]);
@@ -147,7 +147,7 @@ fn few_or_no_balls_have_their_pairs_too() {
 }
 
 #[test]
-fn all_balls_at_one_place_are_all_pairs() {
+fn coincident_balls_are_all_pairs() {
     let mut grid = Grid::default();
     for radius in [0.0, 1e-300, 1.0, 1e300, f64::MAX] {
         let pairs = grid.pairs(&[ball(DVec3::splat(-3.0), radius); 2_000]);
@@ -157,20 +157,20 @@ fn all_balls_at_one_place_are_all_pairs() {
 }
 
 #[test]
-fn points_and_nearly_points_are_told_apart() {
+fn balls_of_zero_or_tiny_radius_are_separated() {
     for radius in [0.0, 1e-300, 1e-17] {
         let mut balls: Vec<Ball> = spread(5_000).map(|(place, _)| ball(place, radius)).collect();
         let mut grid = Grid::default();
         assert!(grid.pairs(&balls).is_empty());
-        // not by testing each against each
-        assert!(grid.levels[0].most_in_a_cell() < 10);
+        // and not by brute force
+        assert!(grid.levels[0].max_cell_count() < 10);
         balls[4_000].centre = balls[70].centre;
         assert_eq!(grid.pairs(&balls), [[70, 4_000]]);
     }
 }
 
 #[test]
-fn a_drum_among_gravel_meets_all_of_it() {
+fn a_large_ball_among_small_ones_finds_all_of_them() {
     let mut balls = gravel(3_000);
     balls.insert(1_234, ball(DVec3::splat(0.5), 100.0));
     let mut grid = Grid::default();
@@ -179,7 +179,7 @@ fn a_drum_among_gravel_meets_all_of_it() {
 }
 
 #[test]
-fn numbers_that_are_none_do_no_harm() {
+fn numbers_that_are_not_finite_do_not_panic() {
     let mut balls = gravel(200);
     for (i, odd) in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -0.0].into_iter().enumerate()
     {
@@ -193,7 +193,7 @@ fn numbers_that_are_none_do_no_harm() {
 #[test]
 fn pairs_are_the_same_for_any_number_of_threads() {
     let balls = gravel(3_000);
-    let expected = brute(&balls);
+    let expected = brute_force(&balls);
     assert!(expected.len() > 300);
     for thread_count in [1, 2, 3, 8] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().unwrap();
@@ -206,7 +206,7 @@ fn pairs_are_the_same_for_any_number_of_threads() {
 }
 
 #[test]
-fn a_warm_grid_needs_no_memory() {
+fn a_reused_grid_does_not_allocate() {
     let balls = gravel(3_000);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     pool.install(|| {
