@@ -170,8 +170,8 @@ export class EnergyPlot {
   // states the zero of gravitational energy, which differs from that of the numbers
   labelZero(pen, style) {
     const { live, recording } = this.player;
-    const where = live ? `its value at ${Number(recording.first.time.toPrecision(4))} s` : 'its minimum';
-    const text = `plot: gravitational energy relative to ${where}, ${quantity(this.zero, 'J', 4)}`;
+    const where = live ? `value at ${Number(recording.first.time.toPrecision(4))} s` : 'minimum';
+    const text = `gravitational zero in the plot: ${where}, ${quantity(this.zero, 'J', 4)}`;
     pen.font = `10.5px ${style.fontFamily}`;
     pen.textAlign = 'right';
     pen.textBaseline = 'top';

@@ -50,8 +50,8 @@
 //! 4. If a running simulation can take the new value only with a change of its state (as friction springs are
 //!    released when a wall moves), add that to `transfer.rs`.
 //!
-//! Nothing changes in the page: `viewer/live_controls.js` makes a slider of every entry of the list, and its label
-//! of the key. `cargo test -p tumble-view` sets every slider of every built-in scene to its present value.
+//! The page needs no change: `viewer/live_controls.js` builds a slider for every entry of the list and labels it with
+//! its key. `cargo test -p tumble-view` sets every slider of every built-in scene to its present value.
 #![warn(missing_debug_implementations)]
 
 mod broadcast;
