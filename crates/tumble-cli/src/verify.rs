@@ -43,7 +43,7 @@ pub fn verify(args: &VerifyArgs) -> Result<(), Failure> {
     if failed == 0 {
         return Ok(());
     }
-    Err(Failure::Run(format!("error: {failed} of the checks failed")))
+    Err(Failure::Run(format!("error: {failed} checks failed")))
 }
 
 fn select(names: &[String]) -> Result<Vec<&'static Case>, Failure> {

@@ -181,12 +181,12 @@ fn all_problems_are_reported_at_once() {
 #[test]
 fn invalid_positions_names_and_counts_are_rejected() {
     let dir = TestDir::new();
-    let room = "[box]\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n";
-    let message = dir.rejected(format!("{room}{BODY}position = [0, -3, 0]\n"), &[]);
+    let walls = "[box]\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n";
+    let message = dir.rejected(format!("{walls}{BODY}position = [0, -3, 0]\n"), &[]);
     assert_contains(&message, &["`body.0.position`", "starts outside", "2.000e0 m", "s.toml:7:12"]);
     // only one of many copies is reported
     let copies = "copies = {count = [100, 100, 10], spacing = [1, 1, 1]}\n";
-    let message = dir.rejected(format!("{room}{BODY}{copies}"), &[]);
+    let message = dir.rejected(format!("{walls}{BODY}{copies}"), &[]);
     assert_eq!(message.matches("error:").count(), 1, "{message}");
 
     let named = |name: &str| format!("{BODY}name = \"{name}\"\n");

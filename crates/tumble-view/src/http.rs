@@ -205,7 +205,7 @@ pub fn response_head(status: u16, port: u16, content_type: &str, length: usize) 
     )
 }
 
-/// Sends a response and closes the connection. Failures are ignored: there is nobody to report them to.
+/// Sends a response and closes the connection. Failures are ignored, since the client is gone then.
 pub fn respond(mut stream: TcpStream, head: &str, body: &[u8]) {
     let sent = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(body));
     if sent.is_ok() {

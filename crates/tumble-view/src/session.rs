@@ -182,7 +182,7 @@ impl Session {
             // an edit may change the total energy, but not the residual
             let residual = self.world.energy().total() - self.reference_energy();
             self.reference_energy = world.energy().total() - residual;
-            // the new world has no mouse spring yet, nor the particle perhaps
+            // attach the mouse spring to the new world, unless its particle no longer exists
             self.mouse_spring = self.mouse_spring.filter(|&spring| world.pull(Some(spring)));
             (self.scene, self.world, self.backlog) = (scene, world, 0.0);
         } else if !self.pending.contains(&edit.key) {
@@ -291,7 +291,7 @@ fn write_positions(scene: &mut Scene, world: &World) {
     }
 }
 
-/// Steps between two looks at the clock, about 100,000 particle steps.
+/// Number of steps between two readings of the clock, about 100,000 particle steps.
 fn steps_per_batch(world: &World) -> u64 {
     let particles: u64 = world.bodies().map(|body| body.particle_count() as u64).sum();
     (100_000 / (particles + 1)).clamp(1, 1000)

@@ -13,7 +13,7 @@ use crate::{Session, frame, header};
 /// Capacity of the command queue.
 pub const QUEUE_CAPACITY: usize = 256;
 
-/// Longest time of stepping without a look at the command queue.
+/// Longest time of stepping before the command queue is checked.
 const TIME_SLICE: Duration = Duration::from_millis(4);
 /// Shortest time between two frames.
 const FRAME_INTERVAL: Duration = Duration::from_nanos(1_000_000_000 / 60);
