@@ -1,4 +1,4 @@
-// What the tests of the page share: a browser, pages whose console is kept, and the count of failures.
+// Shared by the tests of the page: starts the browser, records console messages, counts failures.
 
 import path from 'node:path';
 import { createRequire } from 'node:module';
@@ -17,7 +17,7 @@ export function check(what, holds, detail = '') {
   console.log(`${holds ? 'ok  ' : 'FAIL'} ${what}${holds || detail === '' ? '' : `: ${detail}`}`);
 }
 
-// waits for a condition inside the page, at most 15 s; by the clock, as a slow picture would make the asking slow
+// Waits up to 60 s for a condition in the page. It polls by the clock: software rendering makes animation frames slow.
 export async function until(what, page, condition, argument) {
   try {
     await page.waitForFunction(condition, argument, { timeout: 60000, polling: 100 });
@@ -27,27 +27,28 @@ export async function until(what, page, condition, argument) {
   }
 }
 
-// opens a page and keeps every word of its console
+// opens a page and records its console messages, errors and requests to other servers in `page.messages`
 export async function open(browser, url, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, reducedMotion: 'reduce', acceptDownloads: true, ...options });
   const page = await context.newPage();
-  page.said = [];
-  page.on('console', (message) => page.said.push(`${message.type()}: ${message.text()}`));
-  page.on('pageerror', (error) => page.said.push(`error: ${error.message}`));
+  page.messages = [];
+  page.on('console', (message) => page.messages.push(`${message.type()}: ${message.text()}`));
+  page.on('pageerror', (error) => page.messages.push(`error: ${error.message}`));
   page.on('request', (request) => {
-    if (!/^(file|data|blob|ws|http:\/\/127)/.test(request.url())) page.said.push(`asked for ${request.url()}`);
+    if (!/^(file|data|blob|ws|http:\/\/127)/.test(request.url())) page.messages.push(`request to ${request.url()}`);
   });
   await page.goto(url);
   return page;
 }
 
-export async function quiet(what, page) {
-  check(`${what}: the console is silent`, page.said.length === 0, page.said.slice(0, 5).join(' | '));
+// checks that nothing was recorded, and closes the page
+export async function closeSilent(what, page) {
+  check(`${what}: no console messages`, page.messages.length === 0, page.messages.slice(0, 5).join(' | '));
   await page.context().close();
 }
 
-// the last word, and the exit status
+// prints the result and exits
 export function finish() {
-  console.log(failures === 0 ? '\nall is well' : `\n${failures} failed`);
+  console.log(failures === 0 ? '\nall checks passed' : `\n${failures} failed`);
   process.exit(failures === 0 ? 0 : 1);
 }

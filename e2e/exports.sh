@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Judges what `tumble export` writes by the programs that are to read it: the Khronos glTF validator,
-# USD's own validators, VTK, and ffmpeg. Installs them into e2e/ itself; needs node, npm, python3.
+# Validates the files written by `tumble export` with the Khronos glTF validator, the USD validators, VTK and
+# ffmpeg. Installs them into e2e/; requires node, npm and python3.
 #
-#   e2e/exports.sh [TUMBLE]     TUMBLE is the command to test; built if it is not named
+#   e2e/exports.sh [TUMBLE]     TUMBLE is the program to test; without it, it is built
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -27,7 +27,7 @@ fi
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat > "$out/points.toml" << 'SCENE'
-# bare particles, gravity along -z, a name that neither XML nor USD takes as it is
+# bare particles, gravity along -z, a name that must be escaped in XML and USD
 duration = 0.5
 gravity = [0.0, 0.0, -9.8]
 wall = [{ normal = [0.0, 0.3, 1.0] }]
@@ -53,4 +53,4 @@ for scene in racket cat many points; do
     node gltf.js "$out/$scene.glb"
     .venv/bin/python exports.py "$out" "$scene"
 done
-echo "all exports hold"
+echo "all exports are valid"

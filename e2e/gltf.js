@@ -1,4 +1,4 @@
-// Judges a .glb by the Khronos validator: no error, no warning.
+// Validates a .glb with the Khronos validator: no errors, no warnings.
 const { validateBytes } = require('gltf-validator');
 const { readFileSync } = require('fs');
 

@@ -1,4 +1,4 @@
-// A stand-in for the live server: serves the page, sends a head and frames over /live, and keeps what it hears.
+// A fake of the live server: serves the page, sends a header and frames over /live, and records what it receives.
 
 import http from 'node:http';
 import { createRequire } from 'node:module';
@@ -8,7 +8,7 @@ const { WebSocketServer } = createRequire(path.join(import.meta.dirname, '.tools
 
 const BODY_FLOATS = 22;
 
-// one frame: bodies on circles, a ledger that adds up
+// one frame: bodies on circles, and a consistent energy ledger
 function frame(time, step, bodyCount) {
   const buffer = new ArrayBuffer(80 + 4 * BODY_FLOATS * bodyCount);
   const kinetic = 5 + 5 * Math.cos(time);
@@ -23,11 +23,11 @@ function frame(time, step, bodyCount) {
 }
 
 export class FakeServer {
-  constructor(html, recordedHead) {
-    this.heard = [];
+  constructor(html, recordedHeader) {
+    this.received = [];
     this.html = html;
-    this.head = {
-      ...recordedHead, type: 'head', live: true, frame_count: 0,
+    this.header = {
+      ...recordedHeader, type: 'head', live: true, frame_count: 0,
       parameters: [
         { key: 'collision.collision_stiffness', value: 1e4, unit: 'N/m', applies: 'at once', log: true, min: 1e2, max: 1e7 },
         { key: 'gravity', value: -9.8, unit: 'm/s²', applies: 'at once', log: false, min: -20, max: 20 },
@@ -45,21 +45,21 @@ export class FakeServer {
       response.end(found ? this.html : '');
     });
     this.sockets = new WebSocketServer({ server: this.server, path: '/live' });
-    this.sockets.on('connection', (socket) => this.greet(socket));
+    this.sockets.on('connection', (socket) => this.connect(socket));
     await new Promise((done) => this.server.listen(port, '127.0.0.1', done));
     this.port = this.server.address().port;
     this.timer = setInterval(() => this.tick(), 16);
   }
 
-  greet(socket) {
-    socket.send(JSON.stringify(this.head));
+  connect(socket) {
+    socket.send(JSON.stringify(this.header));
     socket.send(JSON.stringify(this.status));
-    socket.send(frame(this.step * 0.016, this.step, this.head.bodies.length));
-    socket.on('message', (data) => this.hear(socket, JSON.parse(data.toString())));
+    socket.send(frame(this.step * 0.016, this.step, this.header.bodies.length));
+    socket.on('message', (data) => this.receive(socket, JSON.parse(data.toString())));
   }
 
-  hear(socket, message) {
-    this.heard.push(message);
+  receive(socket, message) {
+    this.received.push(message);
     const { type } = message;
     if (type === 'play' || type === 'pause') this.status.playing = type === 'play';
     if (type === 'step') this.advance();
@@ -67,11 +67,11 @@ export class FakeServer {
     if (type === 'reset') {
       this.step = 0;
       this.status.pending = [];
-      socket.send(JSON.stringify(this.head));
-      socket.send(frame(0, 0, this.head.bodies.length));
+      socket.send(JSON.stringify(this.header));
+      socket.send(frame(0, 0, this.header.bodies.length));
     }
     if (type === 'set') {
-      const parameter = this.head.parameters.find(({ key }) => key === message.key);
+      const parameter = this.header.parameters.find(({ key }) => key === message.key);
       parameter.value = message.value;
       if (parameter.applies === 'at reset') this.status.pending = [parameter.key];
     }
@@ -81,7 +81,7 @@ export class FakeServer {
 
   advance() {
     this.step += 1;
-    this.send(frame(this.step * 0.016, this.step, this.head.bodies.length));
+    this.send(frame(this.step * 0.016, this.step, this.header.bodies.length));
   }
 
   tick() {
@@ -92,7 +92,7 @@ export class FakeServer {
     for (const socket of this.sockets.clients) socket.send(data);
   }
 
-  // drops everybody and stops listening
+  // closes all connections and stops listening
   async close() {
     clearInterval(this.timer);
     for (const socket of this.sockets.clients) socket.terminate();

@@ -1,22 +1,22 @@
-// What people see and do in motion.html and in the live page, checked in a real browser.
+// Tests of motion.html and of the live page (with a fake server) in a real browser.
 //
 //   node page.mjs RUNS [PICTURES] [PART]
 //
-// RUNS holds folders of runs; PICTURES gets screenshots if named; PART is the one part to do.
+// RUNS contains folders of runs. Screenshots are written to PICTURES if given. PART selects a single test.
 
 import fs from 'node:fs';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { check, finish, launch, open, quiet, until } from './browser.mjs';
+import { check, closeSilent, finish, launch, open, until } from './browser.mjs';
 
 const [, , runs, pictures] = process.argv;
 
 const recorded = (scene) => pathToFileURL(path.join(runs, scene, 'motion.html')).href;
 const time = (page) => page.evaluate(() => tumble.app.player.time);
-const picture = (page, name) => pictures && page.screenshot({ path: path.join(pictures, `${name}.png`) });
+const screenshot = (page, name) => pictures && page.screenshot({ path: path.join(pictures, `${name}.png`) });
 
-// the rows of trajectory.csv nearest to a time
-function row(scene, at) {
+// the position of the first body in trajectory.csv at a time
+function positionAt(scene, at) {
   const [, ...lines] = fs.readFileSync(path.join(runs, scene, 'trajectory.csv'), 'utf8').trim().split('\n');
   const rows = lines.map((line) => line.split(','));
   return rows.find((columns) => Math.abs(Number(columns[0]) - at) < 1e-9).slice(2, 5).map(Number);
@@ -30,35 +30,35 @@ async function drawing(browser) {
     tumble.pixel(0, 0);
     return tumble.position(0);
   });
-  const expected = row('task2', 1);
-  check('the body is where the trajectory says', shown.every((x, i) => Math.abs(x - expected[i]) < 1e-6), `${shown} and ${expected}`);
-  // its colour at the pixel it projects to, and not beside it
+  const expected = positionAt('task2', 1);
+  check('the position is that of trajectory.csv', shown.every((x, i) => Math.abs(x - expected[i]) < 1e-6), `${shown} and ${expected}`);
+  // the body is blue; compare the pixel at its projected position with one beside it
   const colours = await page.evaluate(() => {
     const [x, y] = tumble.project(0);
     return { on: tumble.pixel(x, y), off: tumble.pixel(x - 260, y), corner: tumble.pixel(5, 500) };
   });
   const blue = ([r, , b]) => b > r + 40;
-  check('the body is on the screen', blue(colours.on) && !blue(colours.off), JSON.stringify(colours));
-  check('the picture is not blank', colours.corner.some((x) => x > 0), JSON.stringify(colours.corner));
+  check('the body is drawn', blue(colours.on) && !blue(colours.off), JSON.stringify(colours));
+  check('the background is drawn', colours.corner.some((x) => x > 0), JSON.stringify(colours.corner));
   await page.keyboard.press('m');
-  const gone = await page.evaluate(() => tumble.pixel(...tumble.project(0)));
-  check('M takes the surfaces away', !blue(gone), JSON.stringify(gone));
+  const hidden = await page.evaluate(() => tumble.pixel(...tumble.project(0)));
+  check('M hides the surfaces', !blue(hidden), JSON.stringify(hidden));
   await page.keyboard.press('m');
-  await picture(page, 'task2');
-  await quiet('task2', page);
+  await screenshot(page, 'task2');
+  await closeSilent('task2', page);
 }
 
 async function playing(browser) {
   const page = await open(browser, recorded('task2'));
   await page.click('#play');
-  await until('play moves time on', page, () => tumble.app.player.time > 0.2);
+  await until('play advances the time', page, () => tumble.app.player.time > 0.2);
   await page.click('#play');
   const stopped = await time(page);
   await page.waitForTimeout(300);
-  check('pause holds it', (await time(page)) === stopped);
+  check('pause stops it', (await time(page)) === stopped);
   await page.evaluate(() => tumble.seek(1));
   await page.keyboard.press('ArrowRight');
-  check('→ is one frame on', Math.abs((await time(page)) - 1.01) < 1e-9, String(await time(page)));
+  check('→ is one frame forward', Math.abs((await time(page)) - 1.01) < 1e-9, String(await time(page)));
   await page.click('#back');
   await page.click('#back');
   check('two clicks back are two frames back', Math.abs((await time(page)) - 0.99) < 1e-9, String(await time(page)));
@@ -72,13 +72,13 @@ async function playing(browser) {
   const plot = await page.locator('#plot .area').boundingBox();
   await page.mouse.click(plot.x + 58 + (plot.width - 68) * 0.25, plot.y + 40);
   check('the plot scrubs', Math.abs((await time(page)) - 0.75) < 0.02, String(await time(page)));
-  check('the plot tells values', (await page.locator('.tip').innerText()).includes('Kinetic'));
+  check('the plot shows values', (await page.locator('.tip').innerText()).includes('Kinetic'));
   await page.keyboard.press('l');
   await page.evaluate(() => tumble.seek(2.9));
   await page.keyboard.press('Space');
-  await until('a loop begins again', page, () => tumble.app.player.time < 2.5);
+  await until('a loop starts again', page, () => tumble.app.player.time < 2.5);
   await page.keyboard.press('Space');
-  await quiet('playing', page);
+  await closeSilent('playing', page);
 }
 
 async function panel(browser) {
@@ -86,16 +86,16 @@ async function panel(browser) {
   await page.evaluate(() => tumble.seek(0.7));
   const at = await page.evaluate(() => {
     tumble.pixel(0, 0);
-    // a body that nothing hides: the one nearest to the eye
+    // the free body nearest to the eye is not hidden by others
     const { app } = tumble;
     const eye = app.view().eye;
-    const far = (i) => Math.hypot(...app.moment.position(i).map((x, k) => x - eye[k]));
-    const nearest = app.head.bodies.map((_, i) => i).filter((i) => i >= 18).sort((a, b) => far(a) - far(b))[0];
+    const distance = (i) => Math.hypot(...app.snapshot.position(i).map((x, k) => x - eye[k]));
+    const nearest = app.header.bodies.map((_, i) => i).filter((i) => i >= 18).sort((a, b) => distance(a) - distance(b))[0];
     const [x, y] = tumble.project(nearest);
     return { nearest, x, y };
   });
   let chosen = null;
-  // a torus has a hole where it projects to: look around it
+  // the centre of a torus is a hole: try points around it too
   for (const [dx, dy] of [[0, 0], [14, 0], [-14, 0], [0, 14], [0, -14], [10, 10]]) {
     await page.mouse.click(at.x + dx, at.y + dy);
     chosen = await page.evaluate(() => tumble.app.selected);
@@ -104,22 +104,22 @@ async function panel(browser) {
   check('a click selects a body', chosen !== null, `${chosen}`);
   check('its row is marked', (await page.locator('.row[aria-selected="true"]').count()) === 1);
   for (const key of ['1', '2', '3', '4', '5', '6', '7', 'i', 'e', 'p']) await page.keyboard.press(key);
-  await until('arrows carry their letters', page, () => document.querySelectorAll('#labels span:not([hidden])').length >= 2);
+  await until('arrows have labels', page, () => document.querySelectorAll('#labels span:not([hidden])').length >= 2);
   await page.keyboard.press('c');
   check('C follows the body', await page.evaluate(() => tumble.app.following === tumble.app.selected));
   await page.locator('.scroll').focus();
   await page.keyboard.press('End');
-  check('the table is walked by keys', (await page.evaluate(() => tumble.app.selected)) === 35);
+  check('keys select in the table', (await page.evaluate(() => tumble.app.selected)) === 35);
   await page.keyboard.press('?');
   check('? opens the help', await page.locator('#help').isVisible());
   await page.keyboard.press('Escape');
   check('Escape closes it', !(await page.locator('#help').isVisible()));
   await page.keyboard.press('t');
-  check('T makes it dark', (await page.evaluate(() => document.documentElement.dataset.theme)) === 'dark');
+  check('T switches to the dark theme', (await page.evaluate(() => document.documentElement.dataset.theme)) === 'dark');
   await page.keyboard.press('b');
   check('B hides the panel', !(await page.locator('#panel').isVisible()));
-  await picture(page, 'many-dark');
-  await quiet('panel', page);
+  await screenshot(page, 'many-dark');
+  await closeSilent('panel', page);
 }
 
 async function views(browser) {
@@ -131,7 +131,7 @@ async function views(browser) {
   await page.mouse.move(520, 340, { steps: 4 });
   await page.mouse.up();
   const turned = await page.evaluate(() => tumble.project(0));
-  check('dragging turns the view', Math.hypot(turned[0] - before[0], turned[1] - before[1]) > 5);
+  check('dragging rotates the view', Math.hypot(turned[0] - before[0], turned[1] - before[1]) > 5);
   const distance = () => page.evaluate(() => tumble.app.camera.distance);
   const far = await distance();
   await page.mouse.wheel(0, -300);
@@ -144,75 +144,75 @@ async function views(browser) {
     const { width, height } = tumble.app.canvas.getBoundingClientRect();
     return [width, height, ...tumble.project(0)];
   });
-  check('a smaller window still holds it', inside[0] === 900 && inside[1] === 600 && inside[2] > 0 && inside[2] < 900, String(inside));
-  await quiet('views', page);
+  check('the body stays visible in a smaller window', inside[0] === 900 && inside[1] === 600 && inside[2] > 0 && inside[2] < 900, String(inside));
+  await closeSilent('views', page);
 }
 
 async function phone(browser) {
   const options = { viewport: { width: 360, height: 740 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true, colorScheme: 'dark' };
   const page = await open(browser, recorded('task2-cat'), options);
-  check('a dark system gets a dark page', (await page.evaluate(() => document.documentElement.dataset.theme)) === 'dark');
+  check('the page follows the dark colour scheme', (await page.evaluate(() => document.documentElement.dataset.theme)) === 'dark');
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);
-  check('nothing is wider than a phone', wide <= 360, String(wide));
+  check('nothing is wider than the screen', wide <= 360, String(wide));
   const outside = await page.evaluate(() =>
     [...document.querySelectorAll('button, select, input')]
       .filter((node) => node.checkVisibility() && !node.closest('dialog') && (node.getBoundingClientRect().right > 361 || node.getBoundingClientRect().left < 0))
       .map((node) => node.id || node.title),
   );
-  check('all controls are in sight', outside.length === 0, outside.join(', '));
+  check('all controls are on the screen', outside.length === 0, outside.join(', '));
   await page.tap('#panel-toggle');
   check('the panel opens', await page.locator('#panel').isVisible());
   await page.tap('#panel-toggle');
   await page.tap('#play');
   await until('a tap plays', page, () => tumble.app.player.time > 0.05);
-  await picture(page, 'phone');
-  await quiet('phone', page);
+  await screenshot(page, 'phone');
+  await closeSilent('phone', page);
 }
 
-async function free(browser) {
+async function autoplay(browser) {
   for (const scene of ['racket', 'slope']) {
     const page = await open(browser, recorded(scene), { reducedMotion: 'no-preference' });
-    await until(`${scene} plays by itself`, page, () => window.tumble?.app.player.time > 0.1);
+    await until(`${scene} starts to play`, page, () => window.tumble?.app.player.time > 0.1);
     await page.keyboard.press('6');
     await page.waitForTimeout(200);
-    await picture(page, scene);
-    await quiet(scene, page);
+    await screenshot(page, scene);
+    await closeSilent(scene, page);
   }
 }
 
-async function crowd(browser) {
-  const page = await open(browser, recorded('crowd'));
+async function manyBodies(browser) {
+  const page = await open(browser, recorded('thousand'));
   const rows = await page.locator('.rows .row').count();
-  check('of a thousand bodies only the rows in sight exist', rows > 3 && rows < 40, String(rows));
+  check('only visible rows of a thousand exist', rows > 3 && rows < 40, String(rows));
   await page.keyboard.press('Space');
   await until('a thousand bodies play', page, () => tumble.app.player.time > 0.2);
-  await picture(page, 'crowd');
-  await quiet('crowd', page);
+  await screenshot(page, 'thousand');
+  await closeSilent('thousand', page);
 }
 
-async function labelled(browser) {
+async function accessibility(browser) {
   const page = await open(browser, recorded('task2'));
   const nameless = await page.evaluate(() =>
     [...document.querySelectorAll('button, input, select, canvas')]
       .filter((node) => !(node.getAttribute('aria-label') || node.labels?.length || node.textContent.trim()))
       .map((node) => node.outerHTML.slice(0, 80)),
   );
-  check('everything that can be used has a name', nameless.length === 0, nameless.join(' | '));
+  check('every control has an accessible name', nameless.length === 0, nameless.join(' | '));
   const seen = new Set();
   for (let i = 0; i < 40; i++) {
     await page.keyboard.press('Tab');
     seen.add(await page.evaluate(() => document.activeElement.id));
   }
-  check('Tab reaches play, slider, arrows', ['play', 'slider', 'arrow-momentum'].every((id) => seen.has(id)), [...seen].join(' '));
-  await quiet('labels', page);
+  check('Tab reaches play, slider, arrows', ['play', 'slider', 'arrow-angularMomentum'].every((id) => seen.has(id)), [...seen].join(' '));
+  await closeSilent('accessibility', page);
 }
 
-// no WebGL2: said plainly, and the rest still works
-async function without(browser) {
+// without WebGL2 the page says so and still shows the numbers
+async function withoutWebgl(browser) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, reducedMotion: 'reduce' });
   const page = await context.newPage();
-  page.said = [];
-  page.on('pageerror', (error) => page.said.push(`error: ${error.message}`));
+  page.messages = [];
+  page.on('pageerror', (error) => page.messages.push(`error: ${error.message}`));
   await page.addInitScript(() => {
     const original = HTMLCanvasElement.prototype.getContext;
     HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
@@ -220,12 +220,12 @@ async function without(browser) {
     };
   });
   await page.goto(recorded('task2'));
-  check('without WebGL2 it says so', (await page.locator('#missing').innerText()).includes('WebGL2'));
+  check('a message says that WebGL2 is missing', (await page.locator('#message').innerText()).includes('WebGL2'));
   await page.evaluate(() => tumble.seek(1));
   await page.waitForTimeout(100);
-  check('and still tells energies', (await page.locator('.legend').innerText()).includes('J'));
-  check('and bodies', (await page.locator('#body-0').innerText()).includes('ball'));
-  await quiet('without WebGL2', page);
+  check('energies are shown', (await page.locator('.legend').innerText()).includes('J'));
+  check('bodies are listed', (await page.locator('#body-0').innerText()).includes('ball'));
+  await closeSilent('without WebGL2', page);
 }
 
 async function live(browser) {
@@ -236,50 +236,50 @@ async function live(browser) {
   const server = new FakeServer(html, head);
   await server.open();
   const page = await open(browser, `http://127.0.0.1:${server.port}/`);
-  const heard = (type) => server.heard.filter((message) => message.type === type);
-  await until('frames arrive', page, () => window.tumble?.app.film.length > 5);
-  check('the link is told', (await page.locator('#link').innerText()) === 'Connected');
+  const received = (type) => server.received.filter((message) => message.type === type);
+  await until('frames arrive', page, () => window.tumble?.app.recording.length > 5);
+  check('the connection is shown', (await page.locator('#connection').innerText()) === 'Connected');
   await page.click('#play');
-  await until('pause is sent and comes back', page, () => document.querySelector('#play').getAttribute('aria-label') === 'Play');
+  await until('pause is sent and confirmed', page, () => document.querySelector('#play').getAttribute('aria-label') === 'Play');
   await page.keyboard.press('ArrowRight');
   await page.waitForTimeout(200);
-  check('a step is sent', heard('step').length === 1, JSON.stringify(server.heard));
+  check('a step is sent', received('step').length === 1, JSON.stringify(server.received));
   const slider = page.locator('.parameter input').first();
   await slider.fill('800');
   await page.waitForTimeout(100);
-  const [set] = heard('set').slice(-1);
-  check('a slider sets its number, by powers', set?.key === 'collision.collision_stiffness' && Math.abs(set.value - 1e6) < 1e3, JSON.stringify(set));
+  const [set] = received('set').slice(-1);
+  check('a logarithmic slider sets its parameter', set?.key === 'collision.collision_stiffness' && Math.abs(set.value - 1e6) < 1e3, JSON.stringify(set));
   await page.locator('.parameter input').nth(2).fill('500');
-  await until('what waits for a reset says so', page, () => document.querySelector('.parameter[data-pending="true"]')?.textContent.includes('waits'));
+  await until('a pending parameter is marked', page, () => document.querySelector('.parameter[data-pending="true"]')?.textContent.includes('waiting'));
   await page.click('#first');
-  await until('a reset begins again', page, () => !document.querySelector('.parameter[data-pending="true"]') && tumble.app.film.length < 3);
+  await until('a reset starts again', page, () => !document.querySelector('.parameter[data-pending="true"]') && tumble.app.recording.length < 3);
   const [x, y] = await page.evaluate(() => tumble.project(0));
   await page.keyboard.down('Shift');
   await page.mouse.move(x, y);
   await page.mouse.down();
   await page.mouse.move(x + 60, y - 40, { steps: 5 });
-  await picture(page, 'live-grab');
+  await screenshot(page, 'live-drag');
   await page.waitForTimeout(100);
   await page.mouse.up();
   await page.keyboard.up('Shift');
   await page.waitForTimeout(200);
-  const [grab] = heard('grab');
-  check('a body is taken and let go', grab?.body === 0 && Number.isInteger(grab.particle) && heard('move').length > 0 && heard('release').length === 1, JSON.stringify(server.heard.slice(-4)));
+  const [attach] = received('grab');
+  check('a body is dragged and released', attach?.body === 0 && Number.isInteger(attach.particle) && received('move').length > 0 && received('release').length === 1, JSON.stringify(server.received.slice(-4)));
   const saving = page.waitForEvent('download');
   await page.click('#save');
   const saved = await saving;
-  check('saving hands over a file', saved.suggestedFilename() === 'task2.toml');
-  check('and says of which moment', /saved as of t = .* s to task2\.toml/.test(await page.locator('#notice').innerText()));
+  check('saving downloads a file', saved.suggestedFilename() === 'task2.toml');
+  check('a notice gives the time of the saved state', /State at t = .* s saved to task2\.toml/.test(await page.locator('#notice').innerText()));
   await page.selectOption('#speed', '0.25');
   await page.waitForTimeout(100);
-  check('speed is sent', heard('speed').at(-1)?.value === 0.25);
-  check('the live page says nothing', page.said.length === 0, page.said.join(' | '));
+  check('speed is sent', received('speed').at(-1)?.value === 0.25);
+  check('the live page has no console messages', page.messages.length === 0, page.messages.join(' | '));
   const { port } = server;
   await server.close();
-  await until('a broken link is told', page, () => document.querySelector('#link').textContent.startsWith('No connection'));
-  check('and in the title', (await page.locator('#facts').innerText()).includes('not connected'));
+  await until('a lost connection is shown', page, () => document.querySelector('#connection').textContent.startsWith('No connection'));
+  check('also in the title', (await page.locator('#facts').innerText()).includes('not connected'));
   await server.open(port);
-  await until('and mended', page, () => document.querySelector('#link').textContent === 'Connected');
+  await until('the page reconnects', page, () => document.querySelector('#connection').textContent === 'Connected');
   await page.context().close();
   await server.close();
 }
@@ -287,7 +287,7 @@ async function live(browser) {
 const only = process.argv[4];
 const browser = await launch();
 try {
-  for (const part of [drawing, playing, panel, views, phone, free, crowd, labelled, without, live]) {
+  for (const part of [drawing, playing, panel, views, phone, autoplay, manyBodies, accessibility, withoutWebgl, live]) {
     if (only && part.name !== only) continue;
     console.log(`\n${part.name}`);
     await part(browser);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Opens the viewer's page in a browser and checks what people would see and do.
-# Needs node, npm and cargo; installs chromium by apt where there is none.
+# Tests the viewer page in a browser.
+# Requires node, npm and cargo; installs Chromium with apt if it is missing.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -18,10 +18,10 @@ trap 'rm -rf "$out"' EXIT
 for scene in task2 task2-cat racket many slope; do
     "$tumble" run "$scene" --out "$out/$scene" >/dev/null
 done
-"$tumble" run many --out "$out/crowd" --duration 0.5 --set 'body.1.position=[0.0,2.5,0.0]' \
+"$tumble" run many --out "$out/thousand" --duration 0.5 --set 'body.1.position=[0.0,2.5,0.0]' \
     --set 'body.0.copies={count=[10,5,10],spacing=[0.18,0.2,0.18],seed=1}' \
     --set 'body.1.copies={count=[10,5,10],spacing=[0.18,0.2,0.18],seed=2}' >/dev/null
 
 node e2e/page.mjs "$out" "$@"
-# not when one part of the pages alone is asked for
+# the tests with a real server, unless a single test was selected
 [ -n "${2:-}" ] || node e2e/live.mjs "$tumble" "$@"

@@ -1,66 +1,68 @@
-// The page as one thing: what is shown, at which time, seen from where, and what happens next.
+// The application: owns recording, player, camera, renderer and panels, and connects them.
 
-import { Film, Moment, decodeHead } from './data.js';
-import { Camera, steer } from './camera.js';
-import { Overlays } from './overlays.js';
-import { Panel } from './panel.js';
-import { Player } from './player.js';
-import { Plot } from './plot.js';
-import { Scene, everything, extent, keepInSight, support } from './scene.js';
-import { THEMES } from './palette.js';
-import { Table } from './table.js';
-import { Timeline } from './timeline.js';
 import { bodyColours } from './bodies.js';
+import { BodyTable } from './body_table.js';
+import { boundsFollowing, boundsOfAll, initialBounds } from './bounds.js';
+import { Camera, listenToPointers } from './camera.js';
 import { byId, element } from './dom.js';
-import { helpDialog } from './keys.js';
-import { dot, isFiniteVector } from './math.js';
-import { pickBody } from './pick.js';
+import { EnergyPlot } from './energy_plot.js';
 import { count, quantity } from './format.js';
+import { helpDialog } from './keyboard.js';
+import { dot, isFiniteVector } from './math.js';
+import { Overlays } from './overlays.js';
+import { THEMES } from './palette.js';
+import { Panel } from './panel.js';
+import { pickBody } from './picking.js';
+import { Player } from './player.js';
+import { Recording, Snapshot, decodeHeader } from './recording.js';
+import { Renderer, webglSupport } from './renderer.js';
+import { Timeline } from './timeline.js';
 
-// of more bodies only the selected one leaves a path
-const MANY_PATHS = 64;
+// with more bodies only the path of the selected one is drawn
+const MAX_PATHS = 64;
 
 export class App {
   constructor() {
-    this.shows = { meshes: true, edges: false, particles: false, paths: true, walls: true };
+    this.layers = { meshes: true, edges: false, particles: false, paths: true, walls: true };
     this.selected = null;
     this.following = null;
     this.hovered = null;
-    this.link = null;
-    this.connected = true;
-    this.grab = null;
+    // of a live run: the connection to the server and the mouse spring, set by main.js
+    this.connection = null;
+    this.isConnected = true;
+    this.mouseSpring = null;
     this.canvas = byId('canvas');
-    this.support = support();
-    this.calm = matchMedia('(prefers-reduced-motion: reduce)').matches;
+    this.webgl = webglSupport();
+    this.reducedMotion = matchMedia('(prefers-reduced-motion: reduce)').matches;
     this.initTheme();
     this.labels = [];
   }
 
-  // everything for a run of these bodies
-  build(rawHead, film) {
-    const head = decodeHead(rawHead);
-    this.head = head;
-    this.film = film ?? new Film(head.bodies.length);
-    this.moment = new Moment(head.bodies.length);
-    this.moment.set(this.film, this.film.start);
+  // builds the page for a run with this header; `recording` is null for a live run
+  build(rawHeader, recording) {
+    const header = decodeHeader(rawHeader);
+    this.header = header;
+    this.recording = recording ?? new Recording(header.bodies.length);
+    this.snapshot = new Snapshot(header.bodies.length);
+    this.snapshot.set(this.recording, this.recording.start);
     this.selected = null;
     this.following = null;
-    this.player = new Player(this.film, head.live);
+    this.player = new Player(this.recording, header.live);
     this.player.addEventListener('change', () => this.changed());
     this.writeTitle();
-    this.startPicture();
+    this.startRendering();
     const { shown } = this.overlays ?? {};
-    this.overlays = new Overlays(head, this.bounds.radius);
-    // another run in the same page: the same arrows
+    this.overlays = new Overlays(header, this.bounds.radius);
+    // the chosen arrows stay when a live run changes
     if (shown) this.overlays.shown = shown;
-    this.overlays.scan(this.film, this.moment);
-    this.learnForces();
-    this.table = new Table(head, bodyColours(head), (body) => this.select(body));
+    this.overlays.scan(this.recording, this.snapshot);
+    this.updateForceScale();
+    this.table = new BodyTable(header, bodyColours(header), (body) => this.select(body));
     this.panel = new Panel(byId('panel'), this);
-    this.plot = new Plot(byId('plot'), this.player);
-    this.timeline = new Timeline(byId('timeline'), this.player, head, this.timelineActions());
+    this.plot = new EnergyPlot(byId('plot'), this.player);
+    this.timeline = new Timeline(byId('timeline'), this.player, header, this.timelineActions());
     helpDialog(byId('help'), this);
-    this.ownView = false;
+    this.userView = false;
     this.layout();
     this.changed();
   }
@@ -71,81 +73,81 @@ export class App {
       step: (n) => this.step(n),
       reset: () => this.reset(),
       speed: (value) => this.setSpeed(value),
-      isRunning: () => this.link?.status.playing ?? false,
+      isRunning: () => this.connection?.status.playing ?? false,
     };
   }
 
   writeTitle() {
-    const { name, description, duration, live, bodies } = this.head;
+    const { name, description, duration, live, bodies } = this.header;
     byId('name').textContent = name;
     byId('description').textContent = description ?? '';
-    const many = bodies.length === 1 ? 'one body' : `${count(bodies.length)} bodies`;
-    const { frames_recorded: all, frame_count: kept } = this.head;
+    const bodyCount = bodies.length === 1 ? 'one body' : `${count(bodies.length)} bodies`;
+    const { frames_recorded: all, frame_count: kept } = this.header;
     const thinned = all > kept ? `, ${count(kept)} of ${count(all)} frames` : '';
-    this.facts = live ? `${many}, ` : `${many}, ${quantity(this.film.end || duration, 's')}${thinned}`;
+    this.facts = live ? `${bodyCount}, ` : `${bodyCount}, ${quantity(this.recording.end || duration, 's')}${thinned}`;
     this.writeFacts();
     document.title = `${name} – tumble`;
   }
 
-  // of a live run: whether it goes on
+  // the line below the title; in a live run it includes the state of the simulation
   writeFacts() {
-    const { live, duration } = this.head;
+    const { live, duration } = this.header;
     let text = this.facts;
-    if (live && !this.connected) text += 'not connected';
+    if (live && !this.isConnected) text += 'not connected';
     else if (live) {
-      text += this.link?.status.playing ? 'running now' : 'paused';
-      if (this.film.end > duration + 1e-9) text += `, past its duration of ${quantity(duration, 's')}`;
+      text += this.connection?.status.playing ? 'running' : 'paused';
+      if (this.recording.end > duration + 1e-9) text += `, beyond its duration of ${quantity(duration, 's')}`;
     }
     if (byId('facts').textContent !== text) byId('facts').textContent = text;
   }
 
   setConnected(on) {
-    this.connected = on;
-    if (this.head) this.writeFacts();
+    this.isConnected = on;
+    if (this.header) this.writeFacts();
   }
 
-  startPicture() {
-    const { head, film } = this;
-    this.bounds = extent(head, film);
-    this.sight = this.bounds;
-    this.camera = new Camera(head.up);
-    const slope = head.walls.find(({ normal }) => dot(normal, head.up) > 0.1 && dot(normal, head.up) < 0.995);
+  startRendering() {
+    const { header, recording } = this;
+    this.bounds = initialBounds(header, recording);
+    this.fittedBounds = this.bounds;
+    this.camera = new Camera(header.up);
+    const slope = header.walls.find(({ normal }) => dot(normal, header.up) > 0.1 && dot(normal, header.up) < 0.995);
     if (slope) this.camera.faceSlope(slope.normal);
-    if (this.support === 'none') {
-      this.scene = null;
-      const text = 'This browser has no WebGL2, so the bodies cannot be drawn here. The energy and the numbers of the bodies are shown all the same.';
-      byId('missing').textContent = text;
-      byId('missing').hidden = false;
+    if (this.webgl === 'none') {
+      this.renderer = null;
+      const text = 'This browser does not support WebGL2, so the bodies cannot be drawn. Energies and numbers are still shown.';
+      byId('message').textContent = text;
+      byId('message').hidden = false;
       return;
     }
-    if (this.scene) this.scene.dispose();
-    this.scene = new Scene(this.canvas, head, film, this.support === 'software');
+    if (this.renderer) this.renderer.dispose();
+    this.renderer = new Renderer(this.canvas, header, this.bounds, this.webgl === 'software');
   }
 
-  // once: the canvas and the window
+  // registers the event listeners of canvas and buttons; to be called once
   listen() {
     const { canvas } = this;
-    const pointers = steer(canvas, this.cameraProxy(), {
-      changed: () => this.moved(),
-      panned: () => this.unfollow(),
+    const pointers = listenToPointers(canvas, this.cameraProxy(), {
+      changed: () => this.cameraMoved(),
+      panned: () => this.stopFollowing(),
       hover: (at) => this.hover(at),
       click: (at) => this.click(at),
-      down: (at, event) => this.grabAt(at, event),
-      drag: (at) => this.grab?.move(this.rayAt(at)),
-      up: () => this.grab?.end(),
+      down: (at, event) => this.attachSpring(at, event),
+      drag: (at) => this.mouseSpring?.move(this.rayAt(at)),
+      up: () => this.mouseSpring?.release(),
     });
-    this.isHeld = pointers.isHeld;
-    canvas.addEventListener('dblclick', () => this.whole());
+    this.isPointerDown = pointers.isDown;
+    canvas.addEventListener('dblclick', () => this.showAll());
     canvas.addEventListener('webglcontextlost', (event) => event.preventDefault());
     canvas.addEventListener('webglcontextrestored', () => {
-      this.scene?.build();
-      this.hardest = null;
-      this.learnForces();
+      this.renderer?.build();
+      this.strongestContact = null;
+      this.updateForceScale();
       this.changed();
     });
-    new ResizeObserver(() => this.layout()).observe(byId('stage'));
+    new ResizeObserver(() => this.layout()).observe(byId('viewport'));
     new ResizeObserver(() => this.layout()).observe(byId('dock'));
-    byId('whole').addEventListener('click', () => this.whole());
+    byId('show-all').addEventListener('click', () => this.showAll());
     byId('theme').addEventListener('click', () => this.switchTheme());
     byId('help-open').addEventListener('click', () => this.help());
     byId('panel-toggle').addEventListener('click', () => this.togglePanel());
@@ -153,24 +155,24 @@ export class App {
     if (matchMedia('(max-width: 760px)').matches) this.togglePanel();
   }
 
-  // the camera of the moment, which a new run replaces
+  // forwards to the present camera, which a new run replaces
   cameraProxy() {
-    return { turn: (...d) => this.camera.turn(...d), zoom: (f) => this.camera.zoom(f), pan: (...d) => this.camera.pan(...d) };
+    return { orbit: (...d) => this.camera.orbit(...d), zoom: (f) => this.camera.zoom(f), pan: (...d) => this.camera.pan(...d) };
   }
 
-  // how much of the window panels cover
+  // updates the camera to the size of the window and the borders covered by panels
   layout() {
     if (!this.camera) return;
-    const stage = byId('stage').getBoundingClientRect();
+    const viewport = byId('viewport').getBoundingClientRect();
     const panel = byId('panel').getBoundingClientRect();
     const dock = byId('dock').getBoundingClientRect();
-    const beside = panel.width > 0 && panel.width < 0.6 * stage.width;
-    const covered = beside ? stage.right - panel.left : 0;
-    const below = panel.width > 0 && !beside ? Math.min(dock.top, panel.top) : dock.top;
-    this.camera.margin = { left: 0, right: covered, top: stage.width < 760 ? 40 : 0, bottom: Math.max(stage.bottom - below, 0) };
-    this.camera.size = [stage.width, stage.height];
-    this.scene?.resize(stage.width, stage.height);
-    if (!this.ownView) this.camera.fit(this.sight.centre, this.sight.radius);
+    const isBeside = panel.width > 0 && panel.width < 0.6 * viewport.width;
+    const covered = isBeside ? viewport.right - panel.left : 0;
+    const below = panel.width > 0 && !isBeside ? Math.min(dock.top, panel.top) : dock.top;
+    this.camera.margin = { left: 0, right: covered, top: viewport.width < 760 ? 40 : 0, bottom: Math.max(viewport.bottom - below, 0) };
+    this.camera.size = [viewport.width, viewport.height];
+    this.renderer?.resize(viewport.width, viewport.height);
+    if (!this.userView) this.camera.fit(this.fittedBounds.centre, this.fittedBounds.radius);
     this.changed();
   }
 
@@ -183,109 +185,109 @@ export class App {
     return this.camera.ray(this.view(), ...at);
   }
 
-  // something is to be drawn
+  // to be called when anything that is shown has changed
   changed() {
-    this.dirty = true;
-    this.stale = true;
+    this.needsDraw = true;
+    this.needsUpdate = true;
     this.request();
   }
 
-  // the view alone is another
-  moved() {
-    this.ownView = true;
-    this.dirty = true;
+  // to be called when the user has moved the camera
+  cameraMoved() {
+    this.userView = true;
+    this.needsDraw = true;
     this.request();
   }
 
   request() {
-    if (this.asked) return;
-    this.asked = requestAnimationFrame((now) => this.frame(now));
+    if (this.frameRequest) return;
+    this.frameRequest = requestAnimationFrame((now) => this.frame(now));
   }
 
   frame(now) {
-    this.asked = 0;
+    this.frameRequest = 0;
     const since = this.last ? now - this.last : 0;
     const seconds = Math.min(since, 250) / 1000;
-    if (this.player.advance(seconds)) this.dirty = true;
-    if (this.dirty) {
-      this.dirty = false;
+    if (this.player.advance(seconds)) this.needsDraw = true;
+    if (this.needsDraw) {
+      this.needsDraw = false;
       this.show();
     }
-    const goesOn = this.player.playing || (this.link?.status.playing ?? false);
-    clearTimeout(this.still);
-    if (!goesOn && this.scene?.isCoarse) this.still = setTimeout(() => this.drawFine(), 350);
-    if (goesOn && since) this.scene?.time(since);
-    this.last = goesOn ? now : 0;
-    if (goesOn || this.dirty) this.request();
+    const isMoving = this.player.playing || (this.connection?.status.playing ?? false);
+    clearTimeout(this.refineTimer);
+    if (!isMoving && this.renderer?.canRefine) this.refineTimer = setTimeout(() => this.drawStill(), 350);
+    if (isMoving && since) this.renderer?.addFrameTime(since);
+    this.last = isMoving ? now : 0;
+    if (isMoving || this.needsDraw) this.request();
   }
 
-  // draws the moment and writes its numbers
+  // draws the present time and updates the numbers
   show() {
-    const { moment, player, film } = this;
-    moment.set(film, player.time);
-    // the hand and a camera that follows what it pulls would chase each other
-    if (this.following !== null && moment.frame && !this.grab?.held) {
-      const place = moment.position(this.following);
-      if (isFiniteVector(place)) this.camera.target = place;
+    const { snapshot, player, recording } = this;
+    snapshot.set(recording, player.time);
+    // a camera that follows the dragged body would move the target of the mouse spring in turn
+    if (this.following !== null && snapshot.frame && !this.mouseSpring?.attached) {
+      const position = snapshot.position(this.following);
+      if (isFiniteVector(position)) this.camera.target = position;
     }
-    if (this.stale) {
-      this.stale = false;
+    if (this.needsUpdate) {
+      this.needsUpdate = false;
       this.panel.update();
       this.timeline.update();
     }
     this.draw();
     this.timeline.tick();
     this.plot.update(this.themeName);
-    // numbers that change sixty times a second cannot be read
+    // numbers are updated at a readable rate
     const now = performance.now();
     if (!player.playing || now - (this.written ?? 0) > 90) {
       this.written = now;
-      this.plot.tick(moment.frame);
-      this.panel.tick(moment);
+      this.plot.tick(snapshot.frame);
+      this.panel.tick(snapshot);
     }
   }
 
   draw() {
-    const { moment, overlays, scene } = this;
+    const { snapshot, overlays, renderer } = this;
     const view = this.view();
-    const arrows = moment.frame ? overlays.arrows(moment, this.selected, this.themeName) : [];
+    const arrows = snapshot.frame ? overlays.arrows(snapshot, this.selected, this.themeName) : [];
     this.writeLabels(view, arrows);
-    if (!scene) return;
-    scene.resize(...this.camera.size);
-    if (this.shows.paths) this.updatePaths();
+    if (!renderer) return;
+    renderer.resize(...this.camera.size);
+    if (this.layers.paths) this.updatePaths();
     const [width, height] = this.camera.size;
-    const alpha = this.head.bodies.length > 8 ? 0.4 : 0.85;
-    scene.draw({ ...view, width, height }, moment, this.film, {
-      ...this.shows,
+    const alpha = this.header.bodies.length > 8 ? 0.4 : 0.85;
+    renderer.draw({ ...view, width, height }, snapshot, this.recording, {
+      ...this.layers,
       theme: THEMES[this.themeName],
-      emphasis: (body) => (body === this.selected ? 1 : body === this.hovered ? 0.5 : 0),
-      pathColour: (body) => [...scene.bodies.colours[body], body === this.selected ? 1 : alpha],
+      highlight: (body) => (body === this.selected ? 1 : body === this.hovered ? 0.5 : 0),
+      pathColour: (body) => [...renderer.bodies.colours[body], body === this.selected ? 1 : alpha],
       arrows,
-      ellipsoids: moment.frame ? overlays.ellipsoids(moment, this.selected) : [],
-      thickness: 0.0062 * this.camera.breadth(),
-      thread: this.grab?.thread(this.head, moment) ?? null,
+      ellipsoids: snapshot.frame ? overlays.ellipsoids(snapshot, this.selected) : [],
+      thickness: 0.0062 * this.camera.viewExtent(),
+      mouseSpring: this.mouseSpring?.ends(this.header, snapshot) ?? null,
     });
   }
 
-  // a picture that stands still may take its time
-  drawFine() {
-    if (this.asked || this.isHeld()) return;
-    this.scene.fine = true;
+  // draws a still image at higher quality
+  drawStill() {
+    if (this.frameRequest || this.isPointerDown()) return;
+    this.renderer.isStill = true;
     this.draw();
-    this.scene.fine = false;
+    this.renderer.isStill = false;
   }
 
   updatePaths() {
-    const { film, scene } = this;
-    const { bodies } = this.head;
-    const wanted = bodies.length <= MANY_PATHS ? bodies.map((_, i) => i) : this.selected === null ? [] : [this.selected];
-    const made = scene.lines.paths;
-    const key = `${wanted.length} ${wanted[0]} ${film.length} ${film.end} ${film.dropped}`;
-    if (made && made.key === key) return;
+    const { recording, renderer } = this;
+    const { bodies } = this.header;
+    const wanted = bodies.length <= MAX_PATHS ? bodies.map((_, i) => i) : this.selected === null ? [] : [this.selected];
+    const built = renderer.lines.paths;
+    const key = `${wanted.length} ${wanted[0]} ${recording.length} ${recording.end} ${recording.dropped}`;
+    if (built && built.key === key) return;
     const now = performance.now();
-    if (made && this.head.live && now - made.at < 200 && made.film === film && made.made > 1 && film.length >= made.made) return;
-    scene.lines.setPaths(film, wanted);
-    Object.assign(scene.lines.paths, { key, at: now, film });
+    if (built && this.header.live && now - built.at < 200 && built.recording === recording && built.frameCount > 1 && recording.length >= built.frameCount) return;
+    renderer.lines.setPaths(recording, wanted);
+    Object.assign(renderer.lines.paths, { key, at: now, recording });
   }
 
   writeLabels(view, arrows) {
@@ -300,7 +302,7 @@ export class App {
       const at = arrows[i] && this.camera.project(view, arrows[i].tip);
       label.hidden = !at;
       if (!at) return;
-      // of arrows that end at one place the letters stand side by side
+      // labels at the same position are put side by side
       while (taken.some(([x, y]) => Math.abs(x - at[0]) < 18 && Math.abs(y - at[1]) < 14)) at[0] += 18;
       taken.push(at);
       if (label.textContent !== arrows[i].symbol) label.textContent = arrows[i].symbol;
@@ -309,95 +311,98 @@ export class App {
     });
   }
 
-  // a live run: the same bodies, other numbers
-  softHead(rawHead) {
-    const head = decodeHead(rawHead);
-    this.head = head;
-    for (const part of [this.overlays, this.table, this.timeline, this.scene?.bodies]) if (part) part.head = head;
-    this.scene?.bodies.setWalls();
+  // replaces the header of a live run whose bodies, walls and box have not changed
+  updateHeader(rawHeader) {
+    const header = decodeHeader(rawHeader);
+    this.header = header;
+    for (const part of [this.overlays, this.table, this.timeline, this.renderer?.bodies]) if (part) part.header = header;
+    this.renderer?.bodies.setWalls();
     this.panel.detailOf = null;
     this.writeTitle();
     this.changed();
   }
 
-  liveFrame(buffer) {
-    const { film } = this;
-    if (!film.push(buffer)) return;
-    // begun again: what was looked back at is gone
-    if (film.length === 1) this.player.toNow();
-    // of a crowd a look now and then will do
-    if (this.head.bodies.length < 200 || film.length % 10 === 1) this.overlays.learn(film.frames.at(-1), this.moment);
-    this.learnForces();
-    if (film.length === 1 && !this.ownView) this.seeAround();
-    else if (!this.grab?.held) this.lookAfter(film.frames.at(-1));
+  // adds a frame of a live run
+  addFrame(buffer) {
+    const { recording } = this;
+    if (!recording.push(buffer)) return;
+    // the simulation was reset: earlier frames are gone
+    if (recording.length === 1) this.player.toLatest();
+    // with many bodies the maxima are sampled
+    if (this.header.bodies.length < 200 || recording.length % 10 === 1) this.overlays.updateMaxima(recording.frames.at(-1), this.snapshot);
+    this.updateForceScale();
+    if (recording.length === 1 && !this.userView) this.resetBounds();
+    else if (!this.mouseSpring?.attached) this.updateBounds(recording.frames.at(-1));
     this.writeFacts();
-    this.dirty = true;
+    this.needsDraw = true;
     this.request();
   }
 
-  // the view of the start, fitted to where the bodies are
-  seeAround() {
-    this.bounds = extent(this.head, this.film);
-    this.sight = this.bounds;
-    this.scene?.setExtent(this.bounds);
-    this.overlays.size = this.bounds.radius;
+  // fits the view to the first frame of a live run
+  resetBounds() {
+    this.bounds = initialBounds(this.header, this.recording);
+    this.fittedBounds = this.bounds;
+    this.renderer?.setBounds(this.bounds);
+    this.overlays.radius = this.bounds.radius;
     this.camera.fit(this.bounds.centre, this.bounds.radius);
   }
 
-  // floor, light and, until somebody moves it, the camera go along with the bodies
-  lookAfter(frame) {
-    const bounds = keepInSight(this.head, frame, this.bounds);
+  // floor and light follow the bodies, and so does the camera until the user moves it
+  updateBounds(frame) {
+    const bounds = boundsFollowing(this.header, frame, this.bounds);
     if (bounds !== this.bounds) {
       this.bounds = bounds;
-      this.scene?.setExtent(bounds);
+      this.renderer?.setBounds(bounds);
     }
-    if (this.ownView || this.following !== null || !this.player.follow) return;
-    const sight = keepInSight(this.head, frame, this.sight);
-    if (sight === this.sight) return;
-    this.sight = sight;
-    this.camera.fit(sight.centre, sight.radius);
+    if (this.userView || this.following !== null || !this.player.followsLatest) return;
+    const fittedBounds = boundsFollowing(this.header, frame, this.fittedBounds);
+    if (fittedBounds === this.fittedBounds) return;
+    this.fittedBounds = fittedBounds;
+    this.camera.fit(fittedBounds.centre, fittedBounds.radius);
   }
 
-  liveStatus({ speed }) {
+  // the status of a live run has changed
+  updateStatus({ speed }) {
     this.timeline.showSpeed(speed);
     this.writeFacts();
-    this.stale = true;
-    this.dirty = true;
+    this.needsUpdate = true;
+    this.needsDraw = true;
     this.request();
   }
 
-  // the scale of the particles' colours
-  learnForces() {
-    if (!this.scene || (this.hardest && this.hardest === this.overlays.hardest)) return;
-    this.hardest = this.overlays.hardest;
-    this.scene.bodies.strongest = Math.max(this.overlays.strongestOnParticle(), 1e-9);
+  // the colour scale of the particles
+  updateForceScale() {
+    if (!this.renderer || (this.strongestContact && this.strongestContact === this.overlays.strongestContact)) return;
+    this.strongestContact = this.overlays.strongestContact;
+    this.renderer.bodies.maxForce = Math.max(this.overlays.maxParticleForce(), 1e-9);
   }
 
-  // what keys and buttons do
+  // actions of keys and buttons
 
   play() {
-    if (this.link) this.link.toggle();
+    if (this.connection) this.connection.toggle();
     else this.player.toggle();
   }
 
   step(count) {
-    if (this.link && count > 0 && this.player.follow) this.link.send({ type: 'step' });
+    if (this.connection && count > 0 && this.player.followsLatest) this.connection.send({ type: 'step' });
     else this.player.step(count);
   }
 
   setSpeed(value) {
-    if (this.link) this.link.send({ type: 'speed', value });
+    if (this.connection) this.connection.send({ type: 'speed', value });
     else this.player.setSpeed(value);
   }
 
-  faster(by) {
-    if (!this.link) {
-      this.player.faster(by);
+  // selects a neighbouring speed
+  changeSpeed(by) {
+    if (!this.connection) {
+      this.player.changeSpeed(by);
       return;
     }
     const { speed } = this.timeline;
     speed.selectedIndex = Math.min(Math.max(speed.selectedIndex + by, 0), speed.options.length - 1);
-    this.setSpeed(this.timeline.chosen());
+    this.setSpeed(this.timeline.selectedSpeed());
   }
 
   loop() {
@@ -405,37 +410,39 @@ export class App {
   }
 
   reset() {
-    this.link?.send({ type: 'reset' });
+    this.connection?.send({ type: 'reset' });
   }
 
   save() {
-    this.link?.send({ type: 'save' });
+    this.connection?.send({ type: 'save' });
   }
 
-  grabMode() {
-    if (!this.grab) return;
-    this.grab.mode = !this.grab.mode;
-    byId('grab').setAttribute('aria-pressed', String(this.grab.mode));
-    this.canvas.dataset.grab = String(this.grab.mode);
+  toggleDragMode() {
+    const { mouseSpring } = this;
+    if (!mouseSpring) return;
+    mouseSpring.dragMode = !mouseSpring.dragMode;
+    byId('drag').setAttribute('aria-pressed', String(mouseSpring.dragMode));
+    this.canvas.dataset.drag = String(mouseSpring.dragMode);
   }
 
-  grabAt(at, event) {
-    if (!this.grab || !(this.grab.mode || event.shiftKey)) return false;
-    return this.grab.begin(this.rayAt(at), this.view().back, this.head, this.moment);
+  attachSpring(at, event) {
+    // a drag with Shift, or in drag mode, attaches the mouse spring; returns whether it has
+    if (!this.mouseSpring || !(this.mouseSpring.dragMode || event.shiftKey)) return false;
+    return this.mouseSpring.attach(this.rayAt(at), this.view().back, this.header, this.snapshot);
   }
 
   hover(at) {
-    const hit = this.moment?.frame && this.head.bodies.length > 1 ? pickBody(this.rayAt(at), this.head, this.moment) : null;
+    const hit = this.snapshot?.frame && this.header.bodies.length > 1 ? pickBody(this.rayAt(at), this.header, this.snapshot) : null;
     const body = hit?.body ?? null;
     this.canvas.style.cursor = hit ? 'pointer' : '';
     if (body === this.hovered) return;
     this.hovered = body;
-    this.dirty = true;
+    this.needsDraw = true;
     this.request();
   }
 
   click(at) {
-    const hit = this.moment.frame ? pickBody(this.rayAt(at), this.head, this.moment) : null;
+    const hit = this.snapshot.frame ? pickBody(this.rayAt(at), this.header, this.snapshot) : null;
     this.select(hit && hit.body !== this.selected ? hit.body : null);
   }
 
@@ -447,41 +454,41 @@ export class App {
   }
 
   selectNext(by) {
-    const { length: all } = this.head.bodies;
+    const { length: bodyCount } = this.header.bodies;
     const from = this.selected ?? (by > 0 ? -1 : 0);
-    this.select((from + by + all) % all);
+    this.select((from + by + bodyCount) % bodyCount);
   }
 
   follow() {
     if (this.following !== null) this.following = null;
     else this.following = this.selected ?? 0;
-    this.ownView = true;
+    this.userView = true;
     this.changed();
   }
 
-  unfollow() {
+  stopFollowing() {
     if (this.following === null) return;
     this.following = null;
-    this.stale = true;
+    this.needsUpdate = true;
   }
 
-  whole() {
+  showAll() {
     this.following = null;
-    this.ownView = false;
-    const { frame } = this.moment;
-    this.sight = frame ? everything(this.head, this.film, frame, this.bounds, this.shows.paths) : this.bounds;
-    this.camera.fit(this.sight.centre, this.sight.radius);
+    this.userView = false;
+    const { frame } = this.snapshot;
+    this.fittedBounds = frame ? boundsOfAll(this.header, this.recording, frame, this.bounds, this.layers.paths) : this.bounds;
+    this.camera.fit(this.fittedBounds.centre, this.fittedBounds.radius);
     this.changed();
   }
 
-  turnView(...d) {
-    this.camera.turn(...d);
-    this.moved();
+  orbitView(...d) {
+    this.camera.orbit(...d);
+    this.cameraMoved();
   }
 
   zoomView(factor) {
     this.camera.zoom(factor);
-    this.moved();
+    this.cameraMoved();
   }
 
   setArrow(key, on) {
@@ -526,21 +533,21 @@ export class App {
     this.setTheme(this.themeName === 'dark' ? 'light' : 'dark');
   }
 
-  // what tests and the curious may ask
+  // the interface for tests and the browser console, as `window.tumble`
   api() {
-    const now = () => {
-      this.moment.set(this.film, this.player.time);
-      return this.moment;
+    const current = () => {
+      this.snapshot.set(this.recording, this.player.time);
+      return this.snapshot;
     };
     return {
       seek: (time) => this.player.seek(time),
-      position: (body) => now().position(body),
-      project: (body) => this.camera.project(this.view(), now().position(body)),
-      // red, green, blue, alpha of the picture at a place in CSS pixels
+      position: (body) => current().position(body),
+      project: (body) => this.camera.project(this.view(), current().position(body)),
+      // colour (RGBA) at a CSS pixel
       pixel: (x, y) => {
-        now();
+        current();
         this.draw();
-        return this.scene?.pixel(x, y) ?? null;
+        return this.renderer?.pixel(x, y) ?? null;
       },
       app: this,
     };

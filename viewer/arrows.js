@@ -1,10 +1,10 @@
-// Arrows and inertia ellipsoids on the graphics card.
+// Draws arrows and inertia ellipsoids.
 
-import { attribute, buffer, program, setView } from './gl.js';
-import { arrow, ball } from './geometry.js';
+import { attribute, buffer, program, useProgram } from './gl.js';
+import { arrow, sphere } from './geometry.js';
 import { ARROW_FRAGMENT, ARROW_VERTEX, ELLIPSOID_FRAGMENT, ELLIPSOID_VERTEX } from './shaders.js';
 
-const FLOATS = 12; // origin, length; direction, radius; colour, opacity
+const FLOATS = 12; // per arrow: origin, length; direction, radius; colour, opacity
 
 export class Arrows {
   constructor(gl) {
@@ -21,16 +21,16 @@ export class Arrows {
     attribute(gl, 1, 3, 28, 16);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.instances);
     [4, 5, 6].forEach((index, k) => attribute(gl, index, 4, 4 * FLOATS, 16 * k, true));
-    const round = ball();
-    this.ballCount = round.length / 6;
-    this.ballArray = gl.createVertexArray();
-    gl.bindVertexArray(this.ballArray);
-    buffer(gl, round);
+    const unitSphere = sphere();
+    this.sphereCount = unitSphere.length / 6;
+    this.sphereArray = gl.createVertexArray();
+    gl.bindVertexArray(this.sphereArray);
+    buffer(gl, unitSphere);
     attribute(gl, 0, 3, 24, 0);
     gl.bindVertexArray(null);
   }
 
-  // `list`: { origin, direction, length, colour }; thickness in metres
+  // `list`: { origin, direction, length, colour }; `thickness`: radius of the shafts (m)
   draw(view, list, thickness) {
     if (!list.length) return;
     const { gl } = this;
@@ -40,9 +40,9 @@ export class Arrows {
     });
     gl.bindBuffer(gl.ARRAY_BUFFER, this.instances);
     gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
-    setView(gl, this.arrow, view);
+    useProgram(gl, this.arrow, view);
     gl.bindVertexArray(this.array);
-    // what a body hides is seen through it, faintly
+    // the parts hidden by bodies are drawn faintly
     gl.depthMask(false);
     gl.depthFunc(gl.GREATER);
     gl.uniform1f(this.arrow.at.strength, 0.42);
@@ -53,20 +53,20 @@ export class Arrows {
     gl.drawArraysInstanced(gl.TRIANGLES, 0, this.cornerCount, list.length);
   }
 
-  // `list`: { centre, turn, axes }
+  // `list`: { centre, orientation, axes }
   drawEllipsoids(view, list, tint) {
     if (!list.length) return;
     const { gl } = this;
     const { at } = this.ellipsoid;
-    setView(gl, this.ellipsoid, view);
+    useProgram(gl, this.ellipsoid, view);
     gl.uniform3fv(at.tint, tint);
-    gl.bindVertexArray(this.ballArray);
+    gl.bindVertexArray(this.sphereArray);
     gl.depthMask(false);
-    for (const { centre, turn, axes } of list) {
+    for (const { centre, orientation, axes } of list) {
       gl.uniform3fv(at.centre, centre);
-      gl.uniform4fv(at.turn, turn);
+      gl.uniform4fv(at.orientation, orientation);
       gl.uniform3fv(at.axes, axes);
-      gl.drawArrays(gl.TRIANGLES, 0, this.ballCount);
+      gl.drawArrays(gl.TRIANGLES, 0, this.sphereCount);
     }
     gl.depthMask(true);
   }

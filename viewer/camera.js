@@ -1,14 +1,15 @@
-// The camera turns about a target; mouse, touch and keys move it.
+// An orbit camera, and the mouse and touch gestures that move it.
 
-import { add, clamp, cross, dot, multiply, normalize, perpendicular, perspective, scale, transform, viewOf } from './math.js';
+import { add, clamp, cross, dot, multiply, normalize, perpendicular, perspective, scale, transform, viewMatrix } from './math.js';
 
+// vertical field of view (rad)
 const FOV = (36 * Math.PI) / 180;
-const STEEPEST = 1.55;
+const MAX_PITCH = 1.55; // rad
 
 export class Camera {
   constructor(up) {
     this.up = normalize(up);
-    // horizontal axes: for y up these are x and z
+    // horizontal axes; x and z if y is up
     this.east = Math.abs(this.up[0]) < 0.9 ? normalize(cross(cross(this.up, [1, 0, 0]), this.up)) : perpendicular(this.up);
     this.north = cross(this.up, this.east);
     this.target = [0, 0, 0];
@@ -16,38 +17,40 @@ export class Camera {
     this.yaw = 0.62;
     this.pitch = 0.36;
     this.size = [1, 1];
-    // part of the picture that panels cover, in CSS pixels
+    // width of the borders covered by panels, in CSS pixels
     this.margin = { left: 0, right: 0, top: 0, bottom: 0 };
   }
 
-  // looks along a slope, so that it is seen to be one
+  // looks across a slope, so that its inclination is visible
   faceSlope(normal) {
-    const level = normalize(cross(normal, this.up));
+    const across = normalize(cross(normal, this.up));
     const front = scale(this.north, -1);
-    const side = dot(level, front) < 0 ? scale(level, -1) : level;
+    const side = dot(across, front) < 0 ? scale(across, -1) : across;
     this.yaw = Math.atan2(dot(side, this.east), dot(side, front)) + 0.3;
     this.pitch = 0.2;
   }
 
-  // looks at a ball of that radius from where it fits into the picture
+  // moves to a distance from which a sphere fits into the view
   fit(centre, radius) {
     this.target = centre;
     this.home = { centre, radius };
-    const [w, h] = this.free();
+    const [w, h] = this.freeSize();
     const half = Math.tan(FOV / 2);
     const part = Math.min(h, w) / this.size[1];
     this.distance = (1.02 * radius) / Math.max(half * part, 0.05);
     this.radius = radius;
   }
 
-  free() {
+  // size of the area not covered by panels
+  freeSize() {
     const { left, right, top, bottom } = this.margin;
     return [Math.max(this.size[0] - left - right, 100), Math.max(this.size[1] - top - bottom, 100)];
   }
 
-  turn(dx, dy) {
+  // changes yaw and pitch by angles (rad)
+  orbit(dx, dy) {
     this.yaw -= dx;
-    this.pitch = clamp(this.pitch + dy, -STEEPEST, STEEPEST);
+    this.pitch = clamp(this.pitch + dy, -MAX_PITCH, MAX_PITCH);
   }
 
   zoom(factor) {
@@ -55,7 +58,7 @@ export class Camera {
     this.distance = clamp(this.distance * factor, 0.02 * radius, 60 * radius);
   }
 
-  // moves the target along the picture by pixels
+  // moves the target parallel to the image plane, by CSS pixels
   pan(dx, dy) {
     const { right, upward } = this.axes();
     const perPixel = (2 * this.distance * Math.tan(FOV / 2)) / this.size[1];
@@ -70,12 +73,12 @@ export class Camera {
     return { right, upward: cross(back, right), back };
   }
 
-  // how much of the world the picture shows at the target, along its shorter side (m)
-  breadth() {
-    return (2 * this.distance * Math.tan(FOV / 2) * Math.min(...this.free())) / this.size[1];
+  // extent of the view at the target along the shorter side of the free area (m)
+  viewExtent() {
+    return (2 * this.distance * Math.tan(FOV / 2) * Math.min(...this.freeSize())) / this.size[1];
   }
 
-  // what a frame needs of it, for a picture of so many CSS pixels
+  // matrix, eye and axes for a view of this size in CSS pixels
   view(width, height) {
     this.size = [width, height];
     const { right, upward, back } = this.axes();
@@ -83,90 +86,91 @@ export class Camera {
     const near = Math.max(this.distance - 3 * (this.home?.radius ?? 1), 0.01 * this.distance);
     const far = this.distance + 40 * (this.home?.radius ?? 1);
     const projection = perspective(FOV, width / height, near, far);
-    // what panels leave free has the target in its middle
+    // the target is in the centre of the area not covered by panels
     const { left, right: covered, top, bottom } = this.margin;
     projection[8] = (covered - left) / width;
     projection[9] = (top - bottom) / height;
-    const matrix = multiply(projection, viewOf(eye, right, upward, back));
+    const matrix = multiply(projection, viewMatrix(eye, right, upward, back));
     return { matrix, eye, right, upward, back, up: this.up, zoom: projection[5], width, height };
   }
 
-  // where a place is in the picture, in CSS pixels; null behind the eye
-  project(view, place) {
-    const [x, y, , w] = transform(view.matrix, place);
+  // projects a point to CSS pixels; null behind the eye
+  project(view, point) {
+    const [x, y, , w] = transform(view.matrix, point);
     if (!(w > 0)) return null;
     return [(0.5 + (0.5 * x) / w) * view.width, (0.5 - (0.5 * y) / w) * view.height];
   }
 
-  // the ray through a pixel: from the eye, of unit length
+  // the ray from the eye through a CSS pixel, with unit direction
   ray(view, x, y) {
     const half = Math.tan(FOV / 2);
     const { left, right: covered, top, bottom } = this.margin;
     const px = ((2 * x) / view.width - 1 + (covered - left) / view.width) * half * (view.width / view.height);
     const py = (1 - (2 * y) / view.height + (top - bottom) / view.height) * half;
     const forward = scale(view.back, -1);
-    return { from: view.eye, along: normalize(add(forward, add(scale(view.right, px), scale(view.upward, py)))) };
+    return { origin: view.eye, direction: normalize(add(forward, add(scale(view.right, px), scale(view.upward, py)))) };
   }
 }
 
-// Pointers on the canvas: one turns, two pinch and pan; `hooks` may take a gesture over.
-export function steer(canvas, camera, hooks) {
+// Mouse and touch gestures on the canvas. One pointer orbits, or pans with the right button or Ctrl; two pointers
+// zoom and pan. `hooks.down` may claim a gesture by returning true; it then gets `drag` and `up`.
+export function listenToPointers(canvas, camera, hooks) {
   const pointers = new Map();
   let moved = 0;
-  let taken = false;
-  const place = (event) => {
+  let claimed = false;
+  const position = (event) => {
     const box = canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
   };
   canvas.addEventListener('contextmenu', (event) => event.preventDefault());
   canvas.addEventListener('pointerdown', (event) => {
     canvas.setPointerCapture(event.pointerId);
-    const at = place(event);
+    const at = position(event);
     if (pointers.size === 0) {
       moved = 0;
-      taken = event.button === 0 && hooks.down(at, event);
+      claimed = event.button === 0 && hooks.down(at, event);
     }
     pointers.set(event.pointerId, { at, button: event.button });
   });
   canvas.addEventListener('pointermove', (event) => {
-    const own = pointers.get(event.pointerId);
-    const at = place(event);
-    if (!own) {
+    const pointer = pointers.get(event.pointerId);
+    const at = position(event);
+    if (!pointer) {
       hooks.hover(at, event);
       return;
     }
-    const d = [at[0] - own.at[0], at[1] - own.at[1]];
+    const d = [at[0] - pointer.at[0], at[1] - pointer.at[1]];
     moved += Math.hypot(...d);
-    if (taken) hooks.drag(at, event);
-    else if (pointers.size === 1) one(d, own.button, event);
-    else two(event.pointerId, own, at, d);
-    own.at = at;
+    if (claimed) hooks.drag(at, event);
+    else if (pointers.size === 1) dragOne(d, pointer.button, event);
+    else dragTwo(event.pointerId, pointer, at, d);
+    pointer.at = at;
     hooks.changed();
   });
-  function one(d, button, event) {
+  function dragOne(d, button, event) {
     if (button === 0 && !event.ctrlKey) {
-      camera.turn(d[0] * 0.0065, d[1] * 0.0065);
+      camera.orbit(d[0] * 0.0065, d[1] * 0.0065);
     } else {
       hooks.panned();
       camera.pan(...d);
     }
   }
-  function two(id, own, at, d) {
+  function dragTwo(id, pointer, at, d) {
     const other = [...pointers].find(([key]) => key !== id)[1];
-    const apart = (p) => Math.hypot(p[0] - other.at[0], p[1] - other.at[1]);
-    camera.zoom(apart(own.at) / Math.max(apart(at), 1));
+    const distance = (p) => Math.hypot(p[0] - other.at[0], p[1] - other.at[1]);
+    camera.zoom(distance(pointer.at) / Math.max(distance(at), 1));
     hooks.panned();
     camera.pan(d[0] / 2, d[1] / 2);
   }
   const end = (event) => {
-    const own = pointers.get(event.pointerId);
+    const pointer = pointers.get(event.pointerId);
     pointers.delete(event.pointerId);
-    if (!own) return;
-    if (taken) {
-      hooks.up(place(event));
-      taken = false;
+    if (!pointer) return;
+    if (claimed) {
+      hooks.up(position(event));
+      claimed = false;
     } else if (moved < 5 && pointers.size === 0 && event.type === 'pointerup') {
-      hooks.click(place(event), event);
+      hooks.click(position(event), event);
     }
   };
   canvas.addEventListener('pointerup', end);
@@ -181,5 +185,5 @@ export function steer(canvas, camera, hooks) {
     },
     { passive: false },
   );
-  return { isHeld: () => pointers.size > 0 };
+  return { isDown: () => pointers.size > 0 };
 }

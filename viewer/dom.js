@@ -1,6 +1,7 @@
-// Making elements.
+// Creates DOM elements.
 
-// an element with properties, attributes (with a dash or as `role`) and children
+// An element with children. `properties` are properties of the node, except: names with a dash, `role` and `for`
+// are attributes, `on` holds event listeners, `css` holds styles.
 export function element(tag, properties = {}, ...children) {
   const node = document.createElement(tag);
   for (const [key, value] of Object.entries(properties)) {
@@ -15,7 +16,7 @@ export function element(tag, properties = {}, ...children) {
 
 export const byId = (id) => document.getElementById(id);
 
-// a drawing of 20 by 20 from the data of a path
+// an icon of 20 × 20 units from SVG path data
 export function icon(path, filled = false) {
   const space = 'http://www.w3.org/2000/svg';
   const svg = document.createElementNS(space, 'svg');
@@ -28,11 +29,11 @@ export function icon(path, filled = false) {
   return svg;
 }
 
-export function button(title, label, on, ...children) {
-  return element('button', { type: 'button', title, 'aria-label': label, on: { click: on } }, ...children);
+export function button(title, label, onClick, ...children) {
+  return element('button', { type: 'button', title, 'aria-label': label, on: { click: onClick } }, ...children);
 }
 
-// hands over a text as a file
+// offers a text as a file download
 export function download(name, text) {
   const url = URL.createObjectURL(new Blob([text], { type: 'text/plain' }));
   const link = element('a', { href: url, download: name });

@@ -1,6 +1,6 @@
-// Numbers and their units as people read them.
+// Numbers with their units as text.
 
-// about `digits` digits, without exponents where a plain number is as short
+// `digits` significant digits; with a power of ten below 0.0001 and from a million on
 export function number(x, digits = 3) {
   if (x === null || x === undefined || Number.isNaN(x)) return '–';
   if (!Number.isFinite(x)) return x > 0 ? '∞' : '−∞';
@@ -27,20 +27,20 @@ function superscript(n) {
 
 export const quantity = (x, unit, digits = 3) => `${number(x, digits)}\u202f${unit}`;
 
-// as many places as make neighbouring frames differ
+// a time (s) with enough decimals to distinguish frames `interval` apart
 export function time(t, interval) {
   const places = Math.min(Math.max(Math.ceil(-Math.log10(Math.max(interval, 1e-9)) - 1e-9), 1), 9);
   return t.toFixed(places).replace('-', '−');
 }
 
-// a round number near x: 1, 2 or 5 times a power of ten
+// the round number closest to x: 1, 2 or 5 times a power of ten
 export function round125(x) {
   const power = 10 ** Math.floor(Math.log10(x));
   const rest = x / power;
   return (rest < 1.5 ? 1 : rest < 3.5 ? 2 : rest < 7.5 ? 5 : 10) * power;
 }
 
-// the components of a vector with as many places as its largest one calls for
+// the components of a vector, all with the decimals of the largest
 export function vector(v) {
   const largest = Math.max(...v.map(Math.abs));
   if (!(largest > 0) || largest >= 1e5 || largest < 1e-3) return v.map((x) => (Math.abs(x) < 1e-6 * largest ? '0' : number(x))).join('  ');

@@ -1,35 +1,36 @@
-// From triangles to what a graphics card draws: corners with normals, edges, arrows, balls.
+// Meshes for drawing: vertices with normals, simplified meshes, edges, spheres, arrows.
 
+// edges with a larger angle between their faces are drawn sharp
 const CREASE = Math.cos((38 * Math.PI) / 180);
-// a body of so few triangles is shown as what it is: flat faces
+// bodies with at most this many triangles are flat shaded
 const FLAT = 200;
 
-// The corners of all triangles, position and normal, six floats each, and three indices a triangle. Corners
-// of one vertex whose normals agree are one, so that a card computes them once.
-export function corners(vertices, triangles) {
+// Vertices with normals (six floats each: position, normal) and three indices per triangle. A vertex is split where
+// the normals of its triangles differ.
+export function withNormals(vertices, triangles) {
   const faces = faceNormals(vertices, triangles);
-  const around = triangles.length / 3 > FLAT ? facesAround(vertices, triangles) : null;
+  const adjacent = triangles.length / 3 > FLAT ? adjacentFaces(vertices, triangles) : null;
   const out = [];
   const index = new Uint32Array(triangles.length);
   const known = new Map();
   triangles.forEach((vertex, i) => {
     const t = Math.floor(i / 3);
-    const n = around ? smooth(faces, around, t, vertex) : faces.unit.subarray(3 * t, 3 * t + 3);
-    const key = known.get(vertex);
-    const same = key?.find((corner) => Math.abs(out[6 * corner + 3] - n[0]) + Math.abs(out[6 * corner + 4] - n[1]) + Math.abs(out[6 * corner + 5] - n[2]) < 1e-3);
+    const n = adjacent ? smoothNormal(faces, adjacent, t, vertex) : faces.unit.subarray(3 * t, 3 * t + 3);
+    const split = known.get(vertex);
+    const same = split?.find((corner) => Math.abs(out[6 * corner + 3] - n[0]) + Math.abs(out[6 * corner + 4] - n[1]) + Math.abs(out[6 * corner + 5] - n[2]) < 1e-3);
     if (same !== undefined) {
       index[i] = same;
       return;
     }
     index[i] = out.length / 6;
     out.push(vertices[3 * vertex], vertices[3 * vertex + 1], vertices[3 * vertex + 2], n[0], n[1], n[2]);
-    if (key) key.push(index[i]);
+    if (split) split.push(index[i]);
     else known.set(vertex, [index[i]]);
   });
   return { data: new Float32Array(out), index };
 }
 
-// unit normals, and areas to weigh them by
+// unit normals and (twice) the areas of all triangles
 function faceNormals(vertices, triangles) {
   const count = triangles.length / 3;
   const unit = new Float32Array(3 * count);
@@ -50,8 +51,8 @@ function faceNormals(vertices, triangles) {
   return { unit, area };
 }
 
-// for each vertex the triangles at it: starts into one list
-function facesAround(vertices, triangles) {
+// The triangles at each vertex: those of vertex v are list[starts[g]] to list[starts[g + 1] - 1], where g = group[v].
+function adjacentFaces(vertices, triangles) {
   const group = weld(vertices);
   const starts = new Uint32Array(vertices.length / 3 + 1);
   for (const vertex of triangles) starts[group[vertex] + 1]++;
@@ -64,7 +65,7 @@ function facesAround(vertices, triangles) {
   return { group, starts, list };
 }
 
-// vertices at the very same place count as one
+// the first vertex with the same coordinates, for each vertex
 function weld(vertices) {
   const bits = new Uint32Array(vertices.buffer, vertices.byteOffset, vertices.length);
   const seen = new Map();
@@ -78,7 +79,8 @@ function weld(vertices) {
   return group;
 }
 
-function smooth({ unit, area }, { group, starts, list }, t, vertex) {
+// the area-weighted mean of the normals around a vertex, without faces beyond a crease
+function smoothNormal({ unit, area }, { group, starts, list }, t, vertex) {
   let x = 0;
   let y = 0;
   let z = 0;
@@ -96,8 +98,8 @@ function smooth({ unit, area }, { group, starts, list }, t, vertex) {
   return l > 0 ? [x / l, y / l, z / l] : [nx, ny, nz];
 }
 
-// A coarser mesh, for many bodies on a slow machine: vertices within one cell of a grid become one.
-export function coarse(vertices, triangles, cell) {
+// A mesh with fewer triangles: vertices in one cell of a grid are merged (vertex clustering).
+export function simplify(vertices, triangles, cell) {
   const cells = new Map();
   const points = [];
   const group = new Uint32Array(vertices.length / 3);
@@ -122,7 +124,7 @@ export function coarse(vertices, triangles, cell) {
   return { vertices: new Float32Array(points), triangles: new Uint32Array(kept) };
 }
 
-// both ends of every edge, once, as indices
+// pairs of vertex indices, each edge once
 export function edges(triangles) {
   const seen = new Set();
   const list = [];
@@ -140,8 +142,8 @@ export function edges(triangles) {
   return new Uint32Array(list);
 }
 
-// a ball of radius one, as corners
-export function ball(rings = 20, segments = 36) {
+// a unit sphere: position and normal of each triangle corner
+export function sphere(rings = 20, segments = 36) {
   const at = (i, j) => {
     const a = (Math.PI * i) / rings;
     const b = (2 * Math.PI * j) / segments;
@@ -157,7 +159,8 @@ export function ball(rings = 20, segments = 36) {
   return new Float32Array(out);
 }
 
-// An arrow along +y as (radius, along, is head, angle): the shader stretches shaft and head apart.
+// An arrow along +y: profile (x, position along the shaft, z, position along the head) and normal of each triangle
+// corner. The shader scales shaft and head separately.
 export function arrow(segments = 20) {
   const out = [];
   const ring = (profile) => {

@@ -1,6 +1,6 @@
-// The little of WebGL2 that everything drawn needs.
+// WebGL2 helpers: programs, buffers, attributes, shadow maps.
 
-// a program with its uniforms by name
+// a program and the locations of its uniforms, by name (`at`)
 export function program(gl, vertex, fragment) {
   const handle = gl.createProgram();
   for (const [type, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
@@ -8,13 +8,13 @@ export function program(gl, vertex, fragment) {
     gl.shaderSource(shader, text);
     gl.compileShader(shader);
     if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) {
-      throw new Error(`a shader does not compile: ${gl.getShaderInfoLog(shader)}`);
+      throw new Error(`shader compilation failed: ${gl.getShaderInfoLog(shader)}`);
     }
     gl.attachShader(handle, shader);
   }
   gl.linkProgram(handle);
   if (!gl.getProgramParameter(handle, gl.LINK_STATUS) && !gl.isContextLost()) {
-    throw new Error(`a program does not link: ${gl.getProgramInfoLog(handle)}`);
+    throw new Error(`program linking failed: ${gl.getProgramInfoLog(handle)}`);
   }
   const at = {};
   const count = gl.getProgramParameter(handle, gl.ACTIVE_UNIFORMS) ?? 0;
@@ -32,15 +32,15 @@ export function buffer(gl, data, target = gl.ARRAY_BUFFER, usage = gl.STATIC_DRA
   return handle;
 }
 
-// attribute `index`: `size` floats from `offset`, a new one every `stride` bytes; for each instance if `perInstance`
+// attribute `index`: `size` floats at `offset`, every `stride` bytes, per vertex or per instance
 export function attribute(gl, index, size, stride, offset, perInstance = false) {
   gl.enableVertexAttribArray(index);
   gl.vertexAttribPointer(index, size, gl.FLOAT, false, stride, offset);
   gl.vertexAttribDivisor(index, perInstance ? 1 : 0);
 }
 
-// a depth texture to look shadows up in
-export function shadowMap(gl, size) {
+// a depth texture with its framebuffer
+export function createShadowMap(gl, size) {
   const texture = gl.createTexture();
   gl.bindTexture(gl.TEXTURE_2D, texture);
   gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, size, size);
@@ -48,22 +48,22 @@ export function shadowMap(gl, size) {
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_COMPARE_FUNC, gl.LEQUAL);
   for (const key of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, key, gl.LINEAR);
   for (const key of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, key, gl.CLAMP_TO_EDGE);
-  const target = gl.createFramebuffer();
-  gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+  const framebuffer = gl.createFramebuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, texture, 0);
   gl.drawBuffers([gl.NONE]);
   gl.readBuffer(gl.NONE);
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-  return { texture, target, size };
+  return { texture, framebuffer, size };
 }
 
-export function freeShadowMap(gl, map) {
-  gl.deleteFramebuffer(map.target);
+export function deleteShadowMap(gl, map) {
+  gl.deleteFramebuffer(map.framebuffer);
   gl.deleteTexture(map.texture);
 }
 
-// what all programs of a pass share
-export function setView(gl, { handle, at }, view) {
+// uses a program and sets the uniforms that depend on camera, light and theme
+export function useProgram(gl, { handle, at }, view) {
   gl.useProgram(handle);
   if (at.viewProjection) gl.uniformMatrix4fv(at.viewProjection, false, view.matrix);
   if (at.eye) gl.uniform3fv(at.eye, view.eye);

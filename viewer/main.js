@@ -1,127 +1,135 @@
-// Where the page begins: with a run inside it, or with a server to ask.
+// Entry point of the page: shows the run embedded in the page, or connects to the server of a live run.
+//
+// Data flow: Connection (live) or the data in the page -> Recording (all frames) -> Player (displayed time) ->
+// Snapshot (the bodies at that time) -> Renderer, Panel, EnergyPlot. Commands of a live run go the other way:
+// App or LiveControls -> Connection -> server. README.md in this folder lists the files and the steps to add a slider.
 
 import { App } from './app.js';
-import { Controls } from './controls.js';
-import { Film, bytesOfBase64 } from './data.js';
-import { Grab } from './grab.js';
-import { Live } from './live.js';
+import { Connection } from './connection.js';
 import { byId, download } from './dom.js';
-import { listen } from './keys.js';
+import { listenToKeys } from './keyboard.js';
+import { LiveControls } from './live_controls.js';
+import { MouseSpring } from './mouse_spring.js';
+import { Recording, decodeBase64 } from './recording.js';
 
-function fail(text) {
-  const missing = byId('missing');
-  missing.textContent = text;
-  missing.hidden = false;
+// shows a message in place of the scene
+function showMessage(text) {
+  const message = byId('message');
+  message.textContent = text;
+  message.hidden = false;
 }
 
 let noticeTimer = 0;
-function notice(text) {
+// shows a notice for a few seconds
+function notify(text) {
   byId('notice').textContent = text;
   clearTimeout(noticeTimer);
   noticeTimer = setTimeout(() => (byId('notice').textContent = ''), 6000);
 }
 
-function begin(app) {
+function listen(app) {
   app.listen();
-  listen(app);
+  listenToKeys(app);
   window.tumble = app.api();
 }
 
-// a run that is over
-function startRecorded(app, node) {
-  const head = JSON.parse(node.textContent);
-  const frames = byId('tumble-frames');
-  const film = Film.ofBytes(bytesOfBase64(frames.textContent), head.bodies.length);
-  // the text of the frames has served
-  frames.remove();
-  app.build(head, film);
-  begin(app);
-  if (!app.calm && film.length > 1) app.player.play();
+// a finished run, whose data are in the page
+function startRecorded(app, headerNode) {
+  const header = JSON.parse(headerNode.textContent);
+  const framesNode = byId('tumble-frames');
+  const recording = Recording.fromBytes(decodeBase64(framesNode.textContent), header.bodies.length);
+  // frees the memory of the base64 text
+  framesNode.remove();
+  app.build(header, recording);
+  listen(app);
+  if (!app.reducedMotion && recording.length > 1) app.player.play();
 }
 
-// whether two heads are drawn by the same scene
-function sameBodies(a, b) {
-  const shape = ({ shapes, bodies, walls, box }) =>
-    JSON.stringify([shapes, bodies.map(({ name, shape: of }) => [name, of]), walls.map(({ normal, offset }) => [normal, offset]), box]);
-  return a !== null && shape(a) === shape(b);
+// whether two headers have the same shapes, bodies, walls and box
+function haveSameScene(a, b) {
+  const scene = ({ shapes, bodies, walls, box }) =>
+    JSON.stringify([shapes, bodies.map(({ name, shape }) => [name, shape]), walls.map(({ normal, offset }) => [normal, offset]), box]);
+  return a !== null && scene(a) === scene(b);
 }
 
 function startLive(app) {
-  let raw = null;
+  let header = null;
   let controls = null;
-  let fresh = false;
+  // whether the next header is the first of its connection
+  let isNewConnection = false;
   const send = (message) => {
-    if (!link.send(message)) notice('There is no connection; nothing was sent.');
+    if (!connection.send(message)) notify('Not connected: nothing was sent.');
   };
-  const hears = {
-    link: (state, seconds) => {
-      document.body.dataset.link = state;
+  const handlers = {
+    state: (state, seconds) => {
+      document.body.dataset.connection = state;
       app.setConnected(state === 'open');
-      if (state === 'open') fresh = true;
-      if (controls) controls.link(state, seconds);
-      else if (state === 'closed') fail(`No connection to the simulation yet; trying again in ${seconds} s.`);
-      else if (state === 'connecting') fail('Connecting to the simulation …');
-      else byId('missing').hidden = true;
+      if (state === 'open') isNewConnection = true;
+      if (controls) controls.connection(state, seconds);
+      else if (state === 'closed') showMessage(`No connection to the simulation; retrying in ${seconds} s.`);
+      else if (state === 'connecting') showMessage('Connecting to the simulation …');
+      else byId('message').hidden = true;
     },
-    head: (head) => {
-      const first = raw === null;
-      if (sameBodies(raw, head)) {
-        // another server, or one that went on unseen: no line leads from the last frame to the next
-        if (fresh) app.film.clear();
-        app.softHead(head);
+    header: (newHeader) => {
+      const isFirst = header === null;
+      if (haveSameScene(header, newHeader)) {
+        // frames were missed, or it is another server: paths must not connect old and new frames
+        if (isNewConnection) app.recording.clear();
+        app.updateHeader(newHeader);
       } else {
-        app.build(head, null);
-        controls = new Controls(byId('live'), { set: (key, value) => send({ type: 'set', key, value }), save: () => app.save(), grab: () => app.grabMode() });
-        controls.link('open', 0);
+        app.build(newHeader, null);
+        controls = new LiveControls(byId('live'), { set: (key, value) => send({ type: 'set', key, value }), save: () => app.save(), toggleDragMode: () => app.toggleDragMode() });
+        controls.connection('open', 0);
       }
-      raw = head;
-      fresh = false;
-      controls.parameters(head.parameters ?? [], head.bodies);
-      if (first) begin(app);
+      header = newHeader;
+      isNewConnection = false;
+      controls.parameters(header.parameters ?? [], header.bodies);
+      if (isFirst) listen(app);
     },
-    frame: (buffer) => raw && app.liveFrame(buffer),
+    frame: (buffer) => header && app.addFrame(buffer),
     status: (status) => {
       controls?.status(status);
-      if (raw) app.liveStatus(status);
+      if (header) app.updateStatus(status);
     },
     saved: (toml) => {
-      const name = `${raw?.name ?? 'scene'}.toml`;
+      const name = `${header?.name ?? 'scene'}.toml`;
       download(name, toml);
-      // the newest state, whatever moment is shown
+      // the saved state is the latest one, whatever time is displayed
       const time = toml.match(/^#.* at t = (\S+) s\.$/m)?.[1];
-      const at = time === undefined ? app.film.end : Number(time);
-      notice(`saved as of t = ${Number(at.toPrecision(9))} s to ${name}`);
+      const at = time === undefined ? app.recording.end : Number(time);
+      notify(`State at t = ${Number(at.toPrecision(9))} s saved to ${name}`);
     },
-    refused: (why) => {
-      notice(`Not done: ${why}`);
-      if (raw) controls?.settle(raw.parameters ?? [], raw.bodies);
+    refused: (reason) => {
+      notify(`Refused: ${reason}`);
+      if (header) controls?.restore(header.parameters ?? [], header.bodies);
     },
   };
   const scheme = location.protocol === 'https:' ? 'wss:' : 'ws:';
-  let link = { send: () => false, status: { playing: false } };
-  link = new Live(`${scheme}//${location.host}/live`, hears);
-  app.link = {
+  // the constructor already calls `handlers`
+  let connection = { send: () => false, status: { playing: false } };
+  connection = new Connection(`${scheme}//${location.host}/live`, handlers);
+  app.connection = {
     send,
     get status() {
-      return link.status;
+      return connection.status;
     },
     toggle: () => {
-      app.player.toNow();
-      send({ type: link.status.playing ? 'pause' : 'play' });
+      app.player.toLatest();
+      send({ type: connection.status.playing ? 'pause' : 'play' });
     },
   };
-  app.grab = new Grab(send);
+  app.mouseSpring = new MouseSpring(send);
 }
 
 function start() {
-  const node = byId('tumble-head');
+  const headerNode = byId('tumble-head');
   try {
     const app = new App();
-    if (node) startRecorded(app, node);
+    if (headerNode) startRecorded(app, headerNode);
     else if (location.protocol.startsWith('http')) startLive(app);
-    else fail('There is no run in this page. "tumble run" writes a motion.html with one; "tumble view" shows a live one.');
+    else showMessage('This page contains no run. "tumble run" writes a motion.html with one; "tumble view" shows a live simulation.');
   } catch (error) {
-    fail(`The run cannot be shown: ${error.message}`);
+    showMessage(`The run cannot be shown: ${error.message}`);
     throw error;
   }
 }

@@ -1,4 +1,4 @@
-// Vectors are arrays [x, y, z], quaternions [w, x, y, z], matrices Float32Array by columns.
+// Vectors [x, y, z], quaternions [w, x, y, z] and 4×4 matrices (Float32Array, column by column).
 
 export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -14,13 +14,14 @@ export function normalize(a) {
   return l > 0 ? scale(a, 1 / l) : [0, 0, 0];
 }
 
-// some unit vector at a right angle to `a`
+// a unit vector perpendicular to `a`
 export function perpendicular(a) {
   const [x, y, z] = a.map(Math.abs);
   const other = x <= y && x <= z ? [1, 0, 0] : y <= z ? [0, 1, 0] : [0, 0, 1];
   return normalize(cross(a, other));
 }
 
+// the vector `v` rotated by the quaternion `q`
 export function rotate(q, v) {
   const [w, x, y, z] = q;
   const t = [2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])];
@@ -42,7 +43,7 @@ export function multiplyQuaternions(a, b) {
   ];
 }
 
-// along the shorter way from a to b, at even speed
+// spherical linear interpolation from `a` (t = 0) to `b` (t = 1) along the shorter arc
 export function slerp(a, b, t) {
   let d = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
   const sign = d < 0 ? -1 : 1;
@@ -71,6 +72,7 @@ export function multiply(a, b) {
   return m;
 }
 
+// a perspective projection; `fov` is the vertical field of view (rad)
 export function perspective(fov, aspect, near, far) {
   const f = 1 / Math.tan(fov / 2);
   const m = new Float32Array(16);
@@ -82,8 +84,8 @@ export function perspective(fov, aspect, near, far) {
   return m;
 }
 
-// a view from `eye` with the axes right, up and back
-export function viewOf(eye, right, up, back) {
+// the view matrix of a camera at `eye` with these axes
+export function viewMatrix(eye, right, up, back) {
   const m = new Float32Array(16);
   [right, up, back].forEach((axis, row) => {
     for (let c = 0; c < 3; c++) m[4 * c + row] = axis[c];
@@ -93,7 +95,7 @@ export function viewOf(eye, right, up, back) {
   return m;
 }
 
-// [x, y, z, w] of a point in clip space
+// the clip coordinates [x, y, z, w] of the point `p`
 export function transform(m, p) {
   return [0, 1, 2, 3].map((r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
 }

@@ -1,25 +1,26 @@
-// Colours that the colour-blind can tell apart (Okabe and Ito 2008), and what they stand for.
+// Colours. The energies have the colour-blind safe palette of Okabe and Ito (2008).
 
+// red, green and blue from 0 to 1
 export function rgb(hex) {
   const n = parseInt(hex.slice(1), 16);
   return [(n >> 16) / 255, ((n >> 8) & 255) / 255, (n & 255) / 255];
 }
 
-// the columns of the ledger, in the order of a frame
+// the columns of the energy ledger, in the order of a frame
 export const LEDGER = [
   { name: 'kinetic', label: 'Kinetic', colour: '#0072b2' },
   { name: 'gravitational', label: 'Gravitational', note: 'zero at the origin, as in energy.csv', colour: '#e69f00' },
   { name: 'elastic', label: 'Elastic (contact springs)', colour: '#009e73' },
-  { name: 'drag', label: 'Drag', note: 'lost to drag', colour: '#56b4e9' },
-  { name: 'dashpot', label: 'Dashpot', note: 'lost to dashpots', colour: '#cc79a7' },
-  { name: 'slip', label: 'Slip', note: 'lost to slip', colour: '#d55e00' },
+  { name: 'drag', label: 'Drag', note: 'dissipated by drag', colour: '#56b4e9' },
+  { name: 'dashpot', label: 'Dashpot', note: 'dissipated by dashpots', colour: '#cc79a7' },
+  { name: 'slip', label: 'Slip', note: 'dissipated by slip', colour: '#d55e00' },
 ];
 
-// calm colours for bodies: between those of the palette and the paper
+// colours of bodies: lighter variants of the palette
 export const BODY_COLOURS = ['#3f8fc9', '#e8a33d', '#35a383', '#c983ac', '#dd7a45', '#7ab8dd', '#b7a93a', '#8d86c9'].map(rgb);
 
-// of bodies that something other than forces moves
-export const DRIVEN_COLOUR = rgb('#969aa0');
+// the colour of fixed and prescribed bodies
+export const PRESCRIBED_COLOUR = rgb('#969aa0');
 
 export const THEMES = {
   light: {

@@ -1,35 +1,35 @@
-// Time as it is shown: playing, paused, scrubbed; of a live run, at its newest frame or back in it.
+// The displayed time. In a live run it follows the latest frame, or stays at an earlier one.
 
 export const SPEEDS = [0.05, 0.1, 0.25, 0.5, 1, 2, 4];
 
 export class Player extends EventTarget {
-  constructor(film, live) {
+  constructor(recording, live) {
     super();
-    this.film = film;
+    this.recording = recording;
     this.live = live;
-    this.time = film.start;
+    this.time = recording.start;
     this.playing = false;
     this.speed = 1;
     this.loop = false;
-    // a live run: whether the newest frame is shown
-    this.follow = live;
+    // whether the displayed time follows the latest frame of a live run
+    this.followsLatest = live;
   }
 
   changed() {
     this.dispatchEvent(new Event('change'));
   }
 
-  // so many seconds later; whether anything moved
+  // moves on by clock time (s); returns whether the displayed time has changed
   advance(seconds) {
     if (this.live) {
-      if (this.follow && this.time !== this.film.end) {
-        this.time = this.film.end;
+      if (this.followsLatest && this.time !== this.recording.end) {
+        this.time = this.recording.end;
         return true;
       }
       return false;
     }
     if (!this.playing) return false;
-    const { start, end } = this.film;
+    const { start, end } = this.recording;
     this.time += seconds * this.speed;
     if (this.time >= end) {
       if (this.loop && end > start) {
@@ -49,7 +49,7 @@ export class Player extends EventTarget {
   }
 
   play() {
-    if (this.time >= this.film.end) this.time = this.film.start;
+    if (this.time >= this.recording.end) this.time = this.recording.start;
     this.playing = true;
     this.changed();
   }
@@ -60,22 +60,22 @@ export class Player extends EventTarget {
   }
 
   seek(time) {
-    const { start, end } = this.film;
+    const { start, end } = this.recording;
     this.time = Math.min(Math.max(time, start), end);
-    this.follow = this.live && this.time >= end;
+    this.followsLatest = this.live && this.time >= end;
     this.changed();
   }
 
-  // so many frames on or back
+  // moves by a number of frames, back if negative
   step(count) {
     this.playing = false;
-    const { film } = this;
-    if (!film.length) return;
-    let index = film.indexAt(this.time + 1e-9);
-    // between two frames, back is the one before
-    if (count < 0 && this.time > film.frames[index].time + 1e-9) index += 1;
-    const to = Math.min(Math.max(index + count, 0), film.length - 1);
-    this.seek(film.frames[to].time);
+    const { recording } = this;
+    if (!recording.length) return;
+    let index = recording.indexAt(this.time + 1e-9);
+    // from between two frames, one step back leads to the earlier of them
+    if (count < 0 && this.time > recording.frames[index].time + 1e-9) index += 1;
+    const target = Math.min(Math.max(index + count, 0), recording.length - 1);
+    this.seek(recording.frames[target].time);
   }
 
   setSpeed(speed) {
@@ -83,14 +83,15 @@ export class Player extends EventTarget {
     this.changed();
   }
 
-  faster(by) {
+  // selects a neighbouring speed
+  changeSpeed(by) {
     const nearest = SPEEDS.reduce((best, s, i) => (Math.abs(s - this.speed) < Math.abs(SPEEDS[best] - this.speed) ? i : best), 0);
     this.setSpeed(SPEEDS[Math.min(Math.max(nearest + by, 0), SPEEDS.length - 1)]);
   }
 
-  toNow() {
-    this.follow = true;
-    this.time = this.film.end;
+  toLatest() {
+    this.followsLatest = true;
+    this.time = this.recording.end;
     this.changed();
   }
 }

@@ -1,4 +1,4 @@
-//! `tumble info`: what a mesh is.
+//! `tumble info`: prints the properties of a mesh.
 
 use std::path::PathBuf;
 
@@ -6,20 +6,21 @@ use clap::Args;
 use tumble::{DVec3, MassModel, Sampling, Shape};
 use tumble_io::mesh::{MeshFile, read_mesh};
 
-use crate::table::{count, short, table};
-use crate::{Failure, print};
+use crate::failure::{Failure, print};
+use crate::format::{columns, count, number};
 
 #[derive(Args)]
+#[command(after_help = "Mass, centre and moments are those of equal particles at the vertices.")]
 pub struct InfoArgs {
-    /// The mesh: .obj .stl .ply .gltf .glb
+    /// Mesh file: .obj, .stl, .ply, .gltf or .glb
     mesh: PathBuf,
-    /// Factor on all coordinates
-    #[arg(long, default_value_t = 1.0)]
+    /// Factor for all coordinates
+    #[arg(long, default_value_t = 1.0, value_name = "FACTOR")]
     scale: f64,
-    /// Mass of each particle (kg)
+    /// Mass of one particle (kg)
     #[arg(long, default_value_t = 1.0, value_name = "KG")]
     particle_mass: f64,
-    /// Merge vertices of the same coordinates, or keep them [default: as the format suggests]
+    /// Whether to merge vertices with the same coordinates [default: true for .stl, .gltf and .glb]
     #[arg(long, value_name = "true|false")]
     weld: Option<bool>,
 }
@@ -27,17 +28,16 @@ pub struct InfoArgs {
 pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     for (name, value) in [("--scale", args.scale), ("--particle-mass", args.particle_mass)] {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(Failure::Call(format!("error: {name} must be above 0, but is {value}")));
+            return Err(Failure::call(&format!("{name} must be above 0, but is {value}")));
         }
     }
-    let call = |error: &dyn std::fmt::Display| Failure::Call(format!("error: {error}"));
-    let mut file = read_mesh(&args.mesh, args.weld).map_err(|error| call(&error))?;
+    let mut file = read_mesh(&args.mesh, args.weld).map_err(|error| Failure::call(&error))?;
     for vertex in &mut file.mesh.vertices {
         *vertex *= args.scale;
     }
     let shape = Shape::of_mesh(&file.mesh, Sampling::Vertices, MassModel::Particles)
-        .map_err(|error| call(&error))?;
-    print(&table(&rows(&file, &shape, args.particle_mass)))
+        .map_err(|error| Failure::call(&error))?;
+    print(&columns(&rows(&file, &shape, args.particle_mass)))
 }
 
 fn rows(file: &MeshFile, shape: &Shape, particle_mass: f64) -> Vec<(&'static str, String)> {
@@ -47,31 +47,32 @@ fn rows(file: &MeshFile, shape: &Shape, particle_mass: f64) -> Vec<(&'static str
     let (min, max) = mesh.vertices.iter().fold(infinite, |(min, max), &v| (min.min(v), max.max(v)));
     let axes = shape.principal().axes;
     let moments = shape.principal().moments * mass;
+    let objects = if file.object_count == 1 { "object" } else { "objects" };
     let mut rows = vec![
-        ("file", format!("{}, {} objects", file.format, file.object_count)),
+        ("file", format!("{}, {} {objects}", file.format, file.object_count)),
         ("particles", particles(file)),
         ("triangles", count(mesh.triangles.len() as u64)),
-        ("mass", format!("{} kg ({} kg in each particle)", short(mass), short(particle_mass))),
+        ("mass", format!("{} kg ({} kg per particle)", number(mass), number(particle_mass))),
         ("centre of mass", format!("{} m", vector(shape.centre()))),
         ("size", format!("{} m", vector(max - min))),
-        ("from, to", format!("{} m, {} m", vector(min), vector(max))),
-        ("radius", format!("{} m about the centre of mass", short(shape.radius()))),
+        ("bounds", format!("{} to {} m", vector(min), vector(max))),
+        ("bounding radius", format!("{} m about the centre of mass", number(shape.radius()))),
         ("principal moments", format!("{} kg·m²", vector(moments))),
         (
             "principal axes",
             format!("{}, {}, {}", vector(axes.x_axis), vector(axes.y_axis), vector(axes.z_axis)),
         ),
-        ("rotates about", format!("{} axes", shape.principal().rotation_count())),
+        ("rotational axes", shape.principal().rotation_count().to_string()),
     ];
     match mesh.solid_integrals() {
         Ok(solid) => {
             rows.push(("watertight", "yes".to_owned()));
-            rows.push(("volume", format!("{} m³", short(solid.measure))));
+            rows.push(("volume", format!("{} m³", number(solid.measure))));
         }
         Err(why) => rows.push(("watertight", format!("no: {why}"))),
     }
     if let Ok(shell) = mesh.shell_integrals() {
-        rows.push(("surface", format!("{} m²", short(shell.measure))));
+        rows.push(("surface", format!("{} m²", number(shell.measure))));
     }
     rows.push(("sha256", file.sha256.clone()));
     rows
@@ -85,5 +86,5 @@ fn particles(file: &MeshFile) -> String {
 }
 
 fn vector(v: DVec3) -> String {
-    format!("({}, {}, {})", short(v.x), short(v.y), short(v.z))
+    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
 }

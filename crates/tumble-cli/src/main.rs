@@ -1,36 +1,44 @@
-//! The `tumble` command: rigid bodies made of particles, from a scene to its results.
+//! The `tumble` command.
+//!
+//! | file | content |
+//! |---|---|
+//! | `run`, `resume`, `export`, `scenes`, `info`, `verify`, `view` | one subcommand each |
+//! | `report` | what `run` and `resume` print at the end |
+//! | `scene_argument` | loads the scene named on the command line |
+//! | `failure` | exit status and message of a failure |
+//! | `interrupt` | Ctrl-C |
+//! | `console` | stdout, stderr, progress bar |
+//! | `format` | numbers and columns |
 
+mod console;
 mod export;
+mod failure;
+mod format;
 mod info;
+mod interrupt;
+mod report;
 mod resume;
 mod run;
+mod scene_argument;
 mod scenes;
-mod table;
 mod verify;
 mod view;
 
-use std::io::IsTerminal;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-/// How the command ends when it does not end well.
-#[derive(Debug)]
-enum Failure {
-    /// The simulation failed: exit status 1.
-    Run(String),
-    /// A wrong call, scene or mesh: exit status 2.
-    Call(String),
-    /// Stopped by Ctrl-C, after everything was written: exit status 130.
-    Interrupted,
-}
+use crate::console::print_error;
+use crate::failure::Failure;
 
 #[derive(Parser)]
-#[command(name = "tumble", version, about = "Simulates rigid bodies made of particles")]
-#[command(
-    after_help = "Exit status: 0 done, 1 the simulation failed, 2 wrong call, scene, mesh, checkpoint or run, \
-                        130 stopped by Ctrl-C"
-)]
+#[command(name = "tumble", version, about = "Simulator of rigid bodies made of particles")]
+#[command(after_help = "Use `tumble COMMAND --help` for the options of a command.\n\n\
+    Exit status:\n  \
+    0    success\n  \
+    1    the simulation failed, or a file could not be written\n  \
+    2    invalid command line, scene, mesh, checkpoint or run\n  \
+    130  stopped by Ctrl-C")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -38,24 +46,24 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Simulate a scene and write its results into a folder
+    /// Run a simulation and write the results to a folder
     Run(run::RunArgs),
-    /// Go on with a run from its checkpoint, to the same bits as if it had never stopped
+    /// Continue a run from its checkpoint
     Resume(resume::ResumeArgs),
-    /// Write a run in another format: .glb .usda .pvd .csv .png .gif .mp4
+    /// Convert the results of a run to another format
     Export(export::ExportArgs),
-    /// List the built-in scenes, or print one to start from
+    /// List the built-in scenes, or print one
     Scenes(scenes::ScenesArgs),
-    /// Show what a mesh is: particles, mass, centre, principal moments, watertight or not
+    /// Print the properties of a mesh: size, mass, principal moments, volume
     Info(info::InfoArgs),
-    /// Hold the physics against theory: expected, measured, bound, verdict
+    /// Compare simulations with theory
     Verify(verify::VerifyArgs),
-    /// Watch and change a simulation in the browser while it runs, or look at a finished run
+    /// Show a running simulation or a finished run in the browser
     View(view::ViewArgs),
 }
 
 fn main() -> ExitCode {
-    // a wrong call ends here, with clap's message and status 2
+    // clap reports an invalid command line itself and exits with status 2
     let cli = Cli::parse();
     let result = match cli.command {
         Command::Run(args) => run::run(&args),
@@ -69,35 +77,13 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure::Run(message)) => {
-            complain(&message);
+            print_error(&message);
             ExitCode::from(1)
         }
         Err(Failure::Call(message)) => {
-            complain(&message);
+            print_error(&message);
             ExitCode::from(2)
         }
         Err(Failure::Interrupted) => ExitCode::from(130),
-    }
-}
-
-/// Whether messages on stderr may have colours.
-fn colour() -> bool {
-    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
-}
-
-/// Prints to stderr; where even that fails, the exit status has to do.
-fn complain(message: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stderr().lock(), "{message}");
-}
-
-/// Prints to stdout; a reader that went away (`tumble scenes | head -1`) is no failure.
-fn print(text: &str) -> Result<(), Failure> {
-    use std::io::Write;
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::Run(format!("error: cannot write to standard output: {error}")))
-        }
-        _ => Ok(()),
     }
 }

@@ -1,13 +1,14 @@
 //! `tumble scenes`: lists the built-in scenes, or prints one.
 
 use clap::Args;
-use tumble_io::scene::{BUILTIN, builtin, nearest};
+use tumble_io::scene::{BUILTIN, builtin};
 
-use crate::{Failure, print};
+use crate::failure::{Failure, print};
+use crate::scene_argument::unknown_scene;
 
 #[derive(Args)]
 pub struct ScenesArgs {
-    /// The scene to print
+    /// Built-in scene to print as a scene file (TOML)
     name: Option<String>,
 }
 
@@ -21,16 +22,6 @@ pub fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
     };
     match builtin(name) {
         Some(scene) => print(scene.text),
-        None => Err(Failure::Call(unknown_scene(name))),
+        None => Err(unknown_scene(name)),
     }
-}
-
-/// What to say of a scene that is neither a file nor built in.
-pub fn unknown_scene(name: &str) -> String {
-    let names = BUILTIN.map(|scene| scene.name);
-    let help = match nearest(name, &names) {
-        Some(near) => format!("did you mean `{near}`?"),
-        None => format!("the built-in scenes are {}", names.join(", ")),
-    };
-    format!("error: there is no file and no built-in scene `{name}`; {help}")
 }

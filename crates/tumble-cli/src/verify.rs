@@ -1,18 +1,22 @@
-//! `tumble verify`: the physics against theory.
+//! `tumble verify`: compares simulations with theory.
 
 use clap::Args;
 use tumble_io::scene::nearest;
 use tumble_verify::{CASES, Case, Check};
 
-use crate::table::short;
-use crate::{Failure, print};
+use crate::failure::{Failure, print};
+use crate::format::number;
 
 #[derive(Args)]
+#[command(
+    after_help = "Prints expected value, measured value, difference and bound of every quantity.\n\
+        The exit status is 1 if a difference exceeds its bound."
+)]
 pub struct VerifyArgs {
-    /// Only these cases, by name
+    /// Names of the cases [default: all]
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// As a page in Markdown
+    /// Print Markdown
     #[arg(long)]
     markdown: bool,
 }
@@ -22,10 +26,10 @@ pub fn verify(args: &VerifyArgs) -> Result<(), Failure> {
     if args.markdown {
         print(HEADER)?;
     }
-    for case in chosen(&args.cases)? {
+    for case in select(&args.cases)? {
         match (case.run)() {
             Ok(checks) => {
-                // a case that measures nothing has proved nothing
+                // a case without checks counts as failed
                 failed += usize::from(checks.is_empty());
                 failed += checks.iter().filter(|check| !check.passed()).count();
                 print(&if args.markdown { markdown(case, &checks) } else { text(case, &checks) })?;
@@ -39,10 +43,10 @@ pub fn verify(args: &VerifyArgs) -> Result<(), Failure> {
     if failed == 0 {
         return Ok(());
     }
-    Err(Failure::Run(format!("error: {failed} numbers are not what theory says")))
+    Err(Failure::Run(format!("error: {failed} checks failed")))
 }
 
-fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
+fn select(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
     if names.is_empty() {
         return Ok(CASES.iter().collect());
     }
@@ -53,23 +57,23 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
             CASES.iter().find(|case| case.name == name).ok_or_else(|| {
                 let help = match nearest(name, &known) {
                     Some(near) => format!("did you mean \"{near}\"?"),
-                    None => format!("there are: {}", known.join(", ")),
+                    None => format!("the cases are {}", known.join(", ")),
                 };
-                Failure::Call(format!("error: there is no case \"{name}\"; {help}"))
+                Failure::call(&format!("there is no case \"{name}\"; {help}"))
             })
         })
         .collect()
 }
 
-/// One row a number: quantity, expected, measured, how far off, bound, verdict, remark.
+/// The cells of one check: quantity, expected, measured, difference, bound, verdict, remark.
 fn row(check: &Check) -> [String; 7] {
     let unit = if check.unit.is_empty() { String::new() } else { format!(" {}", check.unit) };
     [
         check.quantity.clone(),
-        format!("{}{unit}", short(check.expected)),
-        format!("{}{unit}", short(check.measured)),
-        short(check.measured - check.expected),
-        format!("±{}", short(check.bound)),
+        format!("{}{unit}", number(check.expected)),
+        format!("{}{unit}", number(check.measured)),
+        number(check.measured - check.expected),
+        format!("±{}", number(check.bound)),
         if check.passed() { "ok".to_owned() } else { "FAILED".to_owned() },
         check.remark.clone(),
     ]

@@ -1,33 +1,33 @@
-//! Scenes that are wrong: status 2, file, line, column and key, what is allowed, the nearest key,
-//! all problems at once, and nothing written.
+//! Invalid scenes: status 2, all problems at once with file, line, column, key, allowed values and nearest key, and no
+//! files written.
 
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
-use common::{BODY, Desk, says};
+use common::{BODY, TestDir, assert_contains};
 
-/// Each of these lines, put at the top of a scene that is well otherwise.
-fn at_the_top(cases: &[(&str, &[&str])]) {
-    let desk = Desk::new();
+/// Checks the message for each of these lines at the top of an otherwise valid scene.
+fn check_top_lines(cases: &[(&str, &[&str])]) {
+    let dir = TestDir::new();
     for (line, parts) in cases {
-        let message = desk.refused(format!("# \n{line}\n{BODY}"), &[]);
-        says(&message, parts);
+        let message = dir.rejected(format!("# \n{line}\n{BODY}"), &[]);
+        assert_contains(&message, parts);
     }
 }
 
-/// Each of these lines, put into the only body.
-fn in_a_body(cases: &[(&str, &[&str])]) {
-    let desk = Desk::new();
+/// Checks the message for each of these lines in the only body of a scene.
+fn check_body_lines(cases: &[(&str, &[&str])]) {
+    let dir = TestDir::new();
     for (line, parts) in cases {
-        let message = desk.refused(format!("{BODY}{line}\n"), &[]);
-        says(&message, parts);
+        let message = dir.rejected(format!("{BODY}{line}\n"), &[]);
+        assert_contains(&message, parts);
     }
 }
 
 #[test]
-fn unknown_keys_suggest_the_nearest() {
-    at_the_top(&[
+fn unknown_keys_are_reported_with_the_nearest_key() {
+    check_top_lines(&[
         ("gravty = [0, 0, 0]", &["`gravty` is not a known key", "s.toml:2:1", "mean `gravity`?"]),
         (
             "box = {min=[-9, -9, -9], max=[9, 9, 9], opne=[]}",
@@ -41,27 +41,30 @@ fn unknown_keys_suggest_the_nearest() {
         ("[output]\nintervall = 1", &["`output.intervall`", "s.toml:3:1", "mean `interval`?"]),
         ("zzz = 1", &["known here: `body`, `box`"]),
     ]);
-    in_a_body(&[
+    check_body_lines(&[
         ("scael = 1", &["`body.0.scael`", "s.toml:4:1", "mean `scale`?"]),
         (
             "copies = {cuont = [1, 1, 1], count = [1, 1, 1], spacing = [1, 1, 1]}",
             &["`body.0.copies.cuont`", "s.toml:4:11", "mean `count`?"],
         ),
     ]);
-    let desk = Desk::new();
-    says(
-        &desk.refused("[[body]]\nmseh = \"cat.obj\"\n", &[]),
+    let dir = TestDir::new();
+    assert_contains(
+        &dir.rejected("[[body]]\nmseh = \"cat.obj\"\n", &[]),
         &["`body.0` needs one of", "mean `mesh`?"],
     );
-    // a misspelt shape does not make its keys unknown
-    let message = desk.refused("[[body]]\nshape = \"sphre\"\nradius = 1\nsegments = 3\n", &[]);
-    says(&message, &["`body.0.shape` must be one of \"sphere\"", "s.toml:2:9", "mean \"sphere\"?"]);
+    // the keys of a misspelt shape are not reported as unknown
+    let message = dir.rejected("[[body]]\nshape = \"sphre\"\nradius = 1\nsegments = 3\n", &[]);
+    assert_contains(
+        &message,
+        &["`body.0.shape` must be one of \"sphere\"", "s.toml:2:9", "mean \"sphere\"?"],
+    );
     assert!(!message.contains("not a known key"), "{message}");
 }
 
 #[test]
-fn numbers_out_of_range() {
-    at_the_top(&[
+fn numbers_out_of_range_are_rejected() {
+    check_top_lines(&[
         ("dt = 0", &["`dt` must be above 0, but is 0", "s.toml:2:6"]),
         ("dt = -1", &["`dt` must be above 0, but is -1", "s.toml:2:6"]),
         ("dt = nan", &["`dt` must be above 0, but is NaN"]),
@@ -89,7 +92,7 @@ fn numbers_out_of_range() {
             &["`box.open` must be one of", "\"+y\"", ":5:9"],
         ),
     ]);
-    in_a_body(&[
+    check_body_lines(&[
         ("particle_mass = -1", &["`body.0.particle_mass` must be above 0, but is -1", ":4:17"]),
         ("mass = 0", &["`body.0.mass` must be above 0", ":4:8"]),
         ("mass = 1\ndensity = 1", &["`body.0.density` cannot stand beside `mass`", ":5:11"]),
@@ -129,8 +132,8 @@ fn numbers_out_of_range() {
 }
 
 #[test]
-fn wrong_types() {
-    at_the_top(&[
+fn wrong_types_are_rejected() {
+    check_top_lines(&[
         ("dt = \"fast\"", &["`dt` must be a number, above 0, but is a string", ":2:6"]),
         ("dt = 2026-01-01", &["`dt` must be a number", "a date"]),
         ("gravity = -9.8", &["`gravity` must be an array of 3 numbers, but is a number"]),
@@ -141,73 +144,88 @@ fn wrong_types() {
         ("wall = {normal = [0, 1, 0]}", &["write [[wall]] with two brackets"]),
         ("output = []", &["`output` must be a table, but is an array"]),
     ]);
-    let desk = Desk::new();
+    let dir = TestDir::new();
     // one mistake, one message
-    let message = desk.refused(format!("box = 3\n{BODY}"), &[]);
+    let message = dir.rejected(format!("box = 3\n{BODY}"), &[]);
     assert!(!message.contains("is missing"), "{message}");
-    says(&desk.refused("body = 3\n", &[]), &["write [[body]] with two brackets", ":1:8"]);
-    says(&desk.refused("body = [3]\n", &[]), &["`body.0` must be a table", ":1:9"]);
-    says(&desk.refused("body = []\n", &[]), &["the scene has no body"]);
-    let particles = |points: &str| desk.refused(format!("[[body]]\nparticles = {points}\n"), &[]);
-    says(&particles("[]"), &["`body.0.particles` is empty", ":2:13"]);
-    says(&particles("3"), &["must be an array of points"]);
-    says(
+    assert_contains(
+        &dir.rejected("body = 3\n", &[]),
+        &["write [[body]] with two brackets", ":1:8"],
+    );
+    assert_contains(&dir.rejected("body = [3]\n", &[]), &["`body.0` must be a table", ":1:9"]);
+    assert_contains(&dir.rejected("body = []\n", &[]), &["the scene has no body"]);
+    let particles = |points: &str| dir.rejected(format!("[[body]]\nparticles = {points}\n"), &[]);
+    assert_contains(&particles("[]"), &["`body.0.particles` is empty", ":2:13"]);
+    assert_contains(&particles("3"), &["must be an array of points"]);
+    assert_contains(
         &particles("[[0, 0, 0],\n[0, nan, 0]]"),
         &["`body.0.particles.1` must be a point", ":3:1"],
     );
-    says(&particles("[[0, 0]]"), &["`body.0.particles.0` must be a point"]);
-    says(&particles("[[1e300, 0, 0], [0, 0, 0]]"), &["so far apart"]);
+    assert_contains(&particles("[[0, 0]]"), &["`body.0.particles.0` must be a point"]);
+    assert_contains(&particles("[[1e300, 0, 0], [0, 0, 0]]"), &["so far apart"]);
 }
 
 #[test]
-fn all_problems_come_at_once() {
-    let desk = Desk::new();
+fn all_problems_are_reported_at_once() {
+    let dir = TestDir::new();
     let scene =
         format!("dt = 0\nfoo = 1\n[output]\ninterval = 0\n{BODY}mass = -1\n{BODY}bar = 1\n");
-    let message = desk.refused(scene, &["--set", "duration=x"]);
-    says(&message, &["s.toml:1:6", "s.toml:2:1", "s.toml:4:12", "s.toml:8:8", "s.toml:12:1"]);
-    says(&message, &["--set:1:10", "6 problems; nothing was run"]);
+    let message = dir.rejected(scene, &["--set", "duration=x"]);
+    assert_contains(
+        &message,
+        &["s.toml:1:6", "s.toml:2:1", "s.toml:4:12", "s.toml:8:8", "s.toml:12:1"],
+    );
+    assert_contains(&message, &["--set:1:10", "6 problems; nothing was run"]);
 }
 
 #[test]
-fn bodies_that_cannot_stand_where_they_are() {
-    let desk = Desk::new();
-    let room = "[box]\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n";
-    let message = desk.refused(format!("{room}{BODY}position = [0, -3, 0]\n"), &[]);
-    says(&message, &["`body.0.position`", "starts outside", "2.000e0 m", "s.toml:7:12"]);
-    // of very many copies, one speaks for all
+fn invalid_positions_names_and_counts_are_rejected() {
+    let dir = TestDir::new();
+    let walls = "[box]\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n";
+    let message = dir.rejected(format!("{walls}{BODY}position = [0, -3, 0]\n"), &[]);
+    assert_contains(&message, &["`body.0.position`", "starts outside", "2.000e0 m", "s.toml:7:12"]);
+    // only one of many copies is reported
     let copies = "copies = {count = [100, 100, 10], spacing = [1, 1, 1]}\n";
-    let message = desk.refused(format!("{room}{BODY}{copies}"), &[]);
+    let message = dir.rejected(format!("{walls}{BODY}{copies}"), &[]);
     assert_eq!(message.matches("error:").count(), 1, "{message}");
 
     let named = |name: &str| format!("{BODY}name = \"{name}\"\n");
-    let message = desk.refused(format!("{}{}", named("a"), named("a")), &[]);
-    says(&message, &["`body.1.name`", "two bodies are called \"a\"", "s.toml:8:8"]);
+    let message = dir.rejected(format!("{}{}", named("a"), named("a")), &[]);
+    assert_contains(&message, &["`body.1.name`", "two bodies are called \"a\"", "s.toml:8:8"]);
     let two = "copies = {count = [2, 1, 1], spacing = [1, 1, 1]}\n";
-    let message = desk.refused(format!("{}{}{two}", named("a 1"), named("a")), &[]);
-    says(&message, &["two bodies are called \"a 1\""]);
+    let message = dir.rejected(format!("{}{}{two}", named("a 1"), named("a")), &[]);
+    assert_contains(&message, &["two bodies are called \"a 1\""]);
     let many = "copies = {count = [1000, 600, 1], spacing = [1, 1, 1]}\n";
-    let message = desk.refused(format!("{}{many}{}{many}", named("a"), named("b")), &[]);
-    says(&message, &["`body` leads to 1200000 bodies; at most 1000000"]);
+    let message = dir.rejected(format!("{}{many}{}{many}", named("a"), named("b")), &[]);
+    assert_contains(&message, &["`body` leads to 1200000 bodies; at most 1000000"]);
 }
 
 #[test]
-fn files_that_are_no_scene() {
-    let desk = Desk::new();
-    std::fs::create_dir(desk.path("folder")).unwrap();
-    says(&desk.tumble(&["run", "folder"]).ends_with(2).err, &["folder is a folder"]);
-    says(&desk.tumble(&["run", "no.toml"]).ends_with(2).err, &["no file", "`no.toml`"]);
-    says(&desk.tumble(&["run", "/dev/zero"]).ends_with(2).err, &["no ordinary file"]);
-    says(&desk.refused("", &[]), &["the scene has no body", "shape = \"sphere\""]);
-    says(&desk.refused(b"dt = 1\xff", &[]), &["s.toml is no scene", "byte 6"]);
-    says(&desk.refused("dt = ", &[]), &["s.toml:1:"]);
-    says(&desk.refused("dt = 1\ndt = 2", &[]), &["duplicate key", "s.toml:2:1"]);
-    says(&desk.refused(common::TETRAHEDRON, &[]), &["s.toml:1:"]);
+fn files_that_are_not_scenes_are_rejected() {
+    let dir = TestDir::new();
+    std::fs::create_dir(dir.path("folder")).unwrap();
+    assert_contains(
+        &dir.tumble(&["run", "folder"]).expect_status(2).stderr,
+        &["folder is a folder"],
+    );
+    assert_contains(
+        &dir.tumble(&["run", "no.toml"]).expect_status(2).stderr,
+        &["no file", "`no.toml`"],
+    );
+    assert_contains(
+        &dir.tumble(&["run", "/dev/zero"]).expect_status(2).stderr,
+        &["no ordinary file"],
+    );
+    assert_contains(&dir.rejected("", &[]), &["the scene has no body", "shape = \"sphere\""]);
+    assert_contains(&dir.rejected(b"dt = 1\xff", &[]), &["s.toml is no scene", "byte 6"]);
+    assert_contains(&dir.rejected("dt = ", &[]), &["s.toml:1:"]);
+    assert_contains(&dir.rejected("dt = 1\ndt = 2", &[]), &["duplicate key", "s.toml:2:1"]);
+    assert_contains(&dir.rejected(common::TETRAHEDRON, &[]), &["s.toml:1:"]);
 }
 
 #[test]
-fn endless_files_give_short_messages() {
-    let desk = Desk::new();
+fn huge_files_give_short_messages() {
+    let dir = TestDir::new();
     let start = std::time::Instant::now();
     let garbage: String =
         (0..10_000_000u64).map(|i| (32 + ((i * 2_654_435_761) >> 20) % 95) as u8 as char).collect();
@@ -224,21 +242,21 @@ fn endless_files_give_short_messages() {
         garbage,
     ];
     for scene in scenes {
-        let message = desk.refused(scene, &[]);
+        let message = dir.rejected(scene, &[]);
         assert!(message.len() < 100_000, "{}", message.len());
     }
     assert!(start.elapsed() < std::time::Duration::from_secs(60));
 }
 
 #[test]
-fn line_ends_and_marks_of_other_systems_are_fine() {
-    let desk = Desk::new();
+fn crlf_and_byte_order_mark_are_accepted() {
+    let dir = TestDir::new();
     let scene = format!("\u{feff}duration = 0.01\n{BODY}").replace('\n', "\r\n");
-    desk.write("good.toml", &scene);
-    desk.run(&["good.toml"], "o");
-    let message = desk.refused(scene.replace("shape", "shap"), &[]);
-    says(&message, &["s.toml:3:1", "mean `shape`?"]);
-    // columns count from 1, the mark is none
-    let message = desk.refused("\u{feff}dt = 0\r\n", &[]);
-    says(&message, &["s.toml:1:6"]);
+    dir.write("good.toml", &scene);
+    dir.run(&["good.toml"], "o");
+    let message = dir.rejected(scene.replace("shape", "shap"), &[]);
+    assert_contains(&message, &["s.toml:3:1", "mean `shape`?"]);
+    // the byte order mark is not counted as a column
+    let message = dir.rejected("\u{feff}dt = 0\r\n", &[]);
+    assert_contains(&message, &["s.toml:1:6"]);
 }

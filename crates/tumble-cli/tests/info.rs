@@ -1,49 +1,52 @@
-//! `tumble info`: numbers of a mesh that can be checked by hand, and meshes that cannot be read.
+//! `tumble info`: a mesh whose properties are known, and invalid meshes.
 
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
-use common::{Desk, TETRAHEDRON, says};
+use common::{TETRAHEDRON, TestDir, assert_contains};
 
 #[test]
-fn a_tetrahedron_by_hand() {
-    let desk = Desk::new();
-    desk.write("t.obj", TETRAHEDRON);
-    let said = desk.tumble(&["info", "t.obj"]).ends_with(0);
-    assert_eq!(said.err, "");
+fn the_properties_of_a_tetrahedron_are_printed() {
+    let dir = TestDir::new();
+    dir.write("t.obj", TETRAHEDRON);
+    let outcome = dir.tumble(&["info", "t.obj"]).expect_status(0);
+    assert_eq!(outcome.stderr, "");
     let line = |key: &str| {
-        said.out.lines().find(|line| line.trim().starts_with(key)).unwrap_or(key).to_owned()
+        outcome.stdout.lines().find(|line| line.trim().starts_with(key)).unwrap_or(key).to_owned()
     };
-    says(&line("file"), &["OBJ"]);
-    says(&line("particles"), &["4"]);
-    says(&line("triangles"), &["4"]);
-    says(&line("mass"), &["4 kg"]);
-    says(&line("centre"), &["(0.25, 0.25, 0.25)"]);
-    says(&line("size"), &["(1, 1, 1)"]);
-    says(&line("watertight"), &["yes"]);
+    assert_contains(&line("file"), &["OBJ"]);
+    assert_contains(&line("particles"), &["4"]);
+    assert_contains(&line("triangles"), &["4"]);
+    assert_contains(&line("mass"), &["4 kg"]);
+    assert_contains(&line("centre"), &["(0.25, 0.25, 0.25)"]);
+    assert_contains(&line("size"), &["(1, 1, 1)"]);
+    assert_contains(&line("watertight"), &["yes"]);
     // 1/6 m³, and 3/2 + √3/2 m²
-    says(&line("volume"), &["0.16667"]);
-    says(&line("surface"), &["2.366"]);
+    assert_contains(&line("volume"), &["0.16667"]);
+    assert_contains(&line("surface"), &["2.366"]);
 
-    let said = desk.tumble(&["info", "t.obj", "--scale", "2", "--particle-mass", "0.5"]);
-    says(&said.ends_with(0).out, &["mass               2 kg", "1.3333 m³"]);
+    let outcome = dir.tumble(&["info", "t.obj", "--scale", "2", "--particle-mass", "0.5"]);
+    assert_contains(&outcome.expect_status(0).stdout, &["mass               2 kg", "1.3333 m³"]);
 }
 
 #[test]
-fn an_open_mesh_says_so() {
-    let desk = Desk::new();
-    desk.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    says(&desk.tumble(&["info", "open.obj"]).ends_with(0).out, &["watertight", "no: "]);
+fn an_open_mesh_is_not_watertight() {
+    let dir = TestDir::new();
+    dir.write("open.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert_contains(
+        &dir.tumble(&["info", "open.obj"]).expect_status(0).stdout,
+        &["watertight", "no: "],
+    );
 }
 
 #[test]
-fn what_is_no_mesh_is_status_2() {
-    let desk = Desk::new();
-    desk.write("t.obj", TETRAHEDRON);
-    desk.write("empty.obj", "");
-    desk.write("nan.obj", "v 0 0 nan\n");
-    desk.write("cat.xyz", "");
+fn invalid_meshes_are_status_2() {
+    let dir = TestDir::new();
+    dir.write("t.obj", TETRAHEDRON);
+    dir.write("empty.obj", "");
+    dir.write("nan.obj", "v 0 0 nan\n");
+    dir.write("cat.xyz", "");
     let cases: [(&[&str], &[&str]); 9] = [
         (&["info"], &["MESH"]),
         (&["info", "tt.obj"], &["tt.obj", "did you mean \"t.obj\"?"]),
@@ -56,8 +59,8 @@ fn what_is_no_mesh_is_status_2() {
         (&["info", "t.obj", "--scale", "1e300"], &["error: "]),
     ];
     for (args, parts) in cases {
-        let said = desk.tumble(args).ends_with(2);
-        says(&said.err, parts);
-        assert_eq!(said.out, "", "{args:?}");
+        let outcome = dir.tumble(args).expect_status(2);
+        assert_contains(&outcome.stderr, parts);
+        assert_eq!(outcome.stdout, "", "{args:?}");
     }
 }

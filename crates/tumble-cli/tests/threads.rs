@@ -1,4 +1,4 @@
-//! A heap of bodies that meet: the command gives the same bits with any number of threads, and when it goes on from a checkpoint.
+//! A heap of bodies in contact: results are bitwise the same with any number of threads, and after a resume.
 
 #![allow(clippy::unwrap_used)]
 
@@ -6,9 +6,9 @@ mod common;
 
 use assert_cmd::Command;
 
-use common::{Desk, Said};
+use common::{Outcome, TestDir};
 
-/// 125 clumps and a box fall on a rough floor that is shaken.
+/// 125 clumps and a box fall on a vibrating slab.
 const HEAP: &str = r#"
 duration = 0.5
 dt = 2e-4
@@ -51,45 +51,45 @@ position = [0, -0.2, 0]
 interval = 0.05
 "#;
 
-fn heap() -> Desk {
-    let desk = Desk::new();
-    desk.write("heap.toml", HEAP);
-    desk
+fn heap() -> TestDir {
+    let dir = TestDir::new();
+    dir.write("heap.toml", HEAP);
+    dir
 }
 
-fn run(desk: &Desk, threads: usize, args: &[&str]) {
+fn run(dir: &TestDir, threads: usize, args: &[&str]) {
     let mut command = Command::cargo_bin("tumble").unwrap();
-    command.timeout(std::time::Duration::from_secs(300)).current_dir(desk.0.path());
+    command.timeout(std::time::Duration::from_secs(300)).current_dir(dir.0.path());
     command.env("RAYON_NUM_THREADS", threads.to_string()).args(args);
-    Said::of(command.output().unwrap()).ends_with(0);
+    Outcome::new(command.output().unwrap()).expect_status(0);
 }
 
 #[test]
-fn the_number_of_threads_changes_no_bit_of_a_run() {
-    let desk = heap();
+fn results_do_not_depend_on_the_number_of_threads() {
+    let dir = heap();
     let mut first = None;
     for threads in [1, 2, 3, 8] {
         let out = format!("with{threads}");
-        run(&desk, threads, &["run", "heap.toml", "--out", &out]);
-        let summary = desk.summary(&out);
+        run(&dir, threads, &["run", "heap.toml", "--out", &out]);
+        let summary = dir.summary(&out);
         assert!(summary["max_depth"].as_f64().unwrap() > 1e-3);
-        let found = (summary["state_hash"].clone(), desk.read(&format!("{out}/trajectory.csv")));
-        let (hash, rows) = first.get_or_insert_with(|| found.clone());
-        assert_eq!(found.0, *hash, "{threads} threads");
-        assert!(found.1 == *rows, "trajectory.csv differs with {threads} threads");
+        let result = (summary["state_hash"].clone(), dir.read(&format!("{out}/trajectory.csv")));
+        let (hash, rows) = first.get_or_insert_with(|| result.clone());
+        assert_eq!(result.0, *hash, "{threads} threads");
+        assert!(result.1 == *rows, "trajectory.csv differs with {threads} threads");
     }
 }
 
 #[test]
-fn a_heap_goes_on_from_its_checkpoint_to_the_same_bits() {
-    let desk = heap();
-    run(&desk, 2, &["run", "heap.toml", "--out", "whole"]);
-    // in the middle of many contacts, and with another number of threads
-    run(&desk, 1, &["run", "heap.toml", "--duration", "0.33", "--out", "parts"]);
-    run(&desk, 3, &["resume", "parts", "--duration", "0.5"]);
+fn a_resumed_heap_has_the_same_results() {
+    let dir = heap();
+    run(&dir, 2, &["run", "heap.toml", "--out", "whole"]);
+    // stopped during many contacts, and resumed with another number of threads
+    run(&dir, 1, &["run", "heap.toml", "--duration", "0.33", "--out", "parts"]);
+    run(&dir, 3, &["resume", "parts", "--duration", "0.5"]);
     for name in ["trajectory.csv", "energy.csv", "contacts.csv"] {
-        let read = |folder: &str| desk.read(&format!("{folder}/{name}"));
+        let read = |folder: &str| dir.read(&format!("{folder}/{name}"));
         assert!(read("whole") == read("parts"), "{name} differs");
     }
-    assert_eq!(desk.summary("whole")["state_hash"], desk.summary("parts")["state_hash"]);
+    assert_eq!(dir.summary("whole")["state_hash"], dir.summary("parts")["state_hash"]);
 }

@@ -1,61 +1,61 @@
-//! As much of HTTP as a page and a WebSocket need: one request a connection, read with bounds.
+//! The part of HTTP/1.1 that the page and its WebSocket need: one request per connection, of limited size.
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
 use std::time::{Duration, Instant};
 
-/// The head of a request may have so many bytes.
-const MOST_BYTES: usize = 8 << 10;
-/// And so many lines.
-const MOST_HEADERS: usize = 64;
+/// Largest request head, in bytes.
+const MAX_HEAD_BYTES: usize = 8 << 10;
+/// Largest number of headers in a request.
+const MAX_HEADERS: usize = 64;
 
-/// A request, as far as it matters here.
+/// The head of a request.
 #[derive(Debug, Default, PartialEq)]
 pub struct Request {
     /// The method.
     pub method: String,
-    /// What is asked for, without the part after `?`. It is compared with two names and no more.
+    /// The target without its query.
     pub path: String,
-    /// All headers, names in lower case.
+    /// All headers, with names in lower case.
     headers: Vec<(String, String)>,
-    /// What came after the head.
+    /// The bytes received after the head.
     pub rest: Vec<u8>,
 }
 
-/// A request that is not granted.
+/// A request that is refused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// The status.
+    /// The HTTP status.
     pub status: u16,
-    /// Why, for people.
-    pub why: String,
+    /// The reason, sent as the body of the response.
+    pub reason: String,
 }
 
 impl Refusal {
-    fn new(status: u16, why: impl Into<String>) -> Self {
-        Self { status, why: why.into() }
+    fn new(status: u16, reason: impl Into<String>) -> Self {
+        Self { status, reason: reason.into() }
     }
 }
 
 impl Request {
-    /// Reads a request within `patience`.
+    /// Reads a request head, which must be complete within `timeout`.
     ///
     /// # Errors
-    /// An answer where one can be given; `None` where nobody is there any more.
-    pub fn read(stream: &mut TcpStream, patience: Duration) -> Result<Self, Option<Refusal>> {
-        let deadline = Instant::now() + patience;
+    /// The refusal to answer with, or `None` if the connection is closed.
+    pub fn read(stream: &mut TcpStream, timeout: Duration) -> Result<Self, Option<Refusal>> {
+        let deadline = Instant::now() + timeout;
         let mut bytes = Vec::new();
-        let mut room = [0; 1024];
+        let mut buffer = [0; 1024];
         loop {
-            // the whole head has this long, not each of its bytes
-            let left = deadline.saturating_duration_since(Instant::now());
-            if left.is_zero() {
+            // the deadline is for the whole head: a client that sends byte by byte does not extend it
+            let remaining = deadline.saturating_duration_since(Instant::now());
+            if remaining.is_zero() {
                 return Err(Some(Refusal::new(408, "the request took too long")));
             }
-            stream.set_read_timeout(Some(left)).map_err(|_| None)?;
-            match stream.read(&mut room) {
+            stream.set_read_timeout(Some(remaining)).map_err(|_| None)?;
+            match stream.read(&mut buffer) {
                 Ok(0) => return Err(None),
-                Ok(count) => bytes.extend(&room[..count]),
+                Ok(count) => bytes.extend(&buffer[..count]),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) if is_timeout(&error) => {}
                 Err(_) => return Err(None),
@@ -63,15 +63,15 @@ impl Request {
             if let Some(request) = Self::parse(&bytes).map_err(Some)? {
                 return Ok(request);
             }
-            if bytes.len() >= MOST_BYTES {
+            if bytes.len() >= MAX_HEAD_BYTES {
                 return Err(Some(Refusal::new(431, "the head of the request is too long")));
             }
         }
     }
 
-    /// `None` while the head is not complete.
+    /// Parses a request head; `None` while it is incomplete.
     fn parse(bytes: &[u8]) -> Result<Option<Self>, Refusal> {
-        let mut headers = [httparse::EMPTY_HEADER; MOST_HEADERS];
+        let mut headers = [httparse::EMPTY_HEADER; MAX_HEADERS];
         let mut parsed = httparse::Request::new(&mut headers);
         let length = match parsed.parse(bytes) {
             Ok(httparse::Status::Complete(length)) => length,
@@ -79,9 +79,9 @@ impl Request {
             Err(httparse::Error::TooManyHeaders) => {
                 return Err(Refusal::new(431, "the request has too many headers"));
             }
-            Err(error) => return Err(Refusal::new(400, format!("this is no request: {error}"))),
+            Err(error) => return Err(Refusal::new(400, format!("not an HTTP request: {error}"))),
         };
-        let text = |header: &httparse::Header| {
+        let owned = |header: &httparse::Header| {
             let value = String::from_utf8_lossy(header.value).trim().to_owned();
             (header.name.to_ascii_lowercase(), value)
         };
@@ -89,83 +89,88 @@ impl Request {
         Ok(Some(Self {
             method: parsed.method.unwrap_or_default().to_owned(),
             path: target.split('?').next().unwrap_or_default().to_owned(),
-            headers: parsed.headers.iter().map(text).collect(),
+            headers: parsed.headers.iter().map(owned).collect(),
             rest: bytes[length..].to_vec(),
         }))
     }
 
-    fn all(&self, name: &str) -> Vec<&str> {
-        let named = self.headers.iter().filter(|(key, _)| key == name);
-        named.map(|(_, value)| value.as_str()).collect()
+    fn values(&self, name: &str) -> Vec<&str> {
+        let matching = self.headers.iter().filter(|(key, _)| key == name);
+        matching.map(|(_, value)| value.as_str()).collect()
     }
 
-    fn one(&self, name: &str) -> Option<&str> {
-        self.all(name).first().copied()
+    fn first_value(&self, name: &str) -> Option<&str> {
+        self.values(name).first().copied()
     }
 
-    /// Whether this is somebody who has typed our address into a browser here, and not a page from
-    /// elsewhere that makes a browser ask us: `Host` and `Origin` name this machine and port.
+    /// Checks that `Host` and `Origin` name this machine and port.
+    ///
+    /// This keeps out pages of other sites: they could otherwise make a browser on this machine connect to the
+    /// server, also under a host name that resolves to the loopback address (DNS rebinding).
     ///
     /// # Errors
     /// Status 400 or 403.
-    pub fn is_from_here(&self, port: u16) -> Result<(), Refusal> {
-        let [host] = self.all("host")[..] else {
-            return Err(Refusal::new(400, "the request must name one Host"));
+    pub fn check_same_origin(&self, port: u16) -> Result<(), Refusal> {
+        let [host] = self.values("host")[..] else {
+            return Err(Refusal::new(400, "the request must have exactly one Host header"));
         };
-        let is_ours = |name: &str| {
+        let is_own = |name: &str| {
             let name = name.to_ascii_lowercase();
             ["127.0.0.1", "localhost", "[::1]"]
                 .iter()
                 .any(|host| name == format!("{host}:{port}") || (port == 80 && name == *host))
         };
-        let origins = self.all("origin");
+        let origins = self.values("origin");
         let mut hosts = origins.iter().map(|origin| origin.strip_prefix("http://"));
-        if is_ours(host) && hosts.all(|host| host.is_some_and(is_ours)) {
+        if is_own(host) && hosts.all(|host| host.is_some_and(is_own)) {
             return Ok(());
         }
         Err(Refusal::new(
             403,
             format!(
-                "this server answers to http://127.0.0.1:{port}/ and http://localhost:{port}/ only; \
+                "the address of this server is http://127.0.0.1:{port}/ or http://localhost:{port}/; \
                  through a tunnel, use the same port at both ends"
             ),
         ))
     }
 
-    /// The key of a request for a WebSocket.
+    /// The key of a WebSocket request (RFC 6455, section 4.2.1).
     ///
     /// # Errors
-    /// What is missing from such a request.
+    /// What is wrong with the request.
     pub fn websocket_key(&self) -> Result<&str, Refusal> {
-        let has = |name: &str, word: &str| {
-            let values = self.all(name);
-            values.iter().flat_map(|v| v.split(',')).any(|v| v.trim().eq_ignore_ascii_case(word))
+        let has_token = |name: &str, token: &str| {
+            let values = self.values(name);
+            values.iter().flat_map(|v| v.split(',')).any(|v| v.trim().eq_ignore_ascii_case(token))
         };
-        if !has("upgrade", "websocket") || !has("connection", "upgrade") {
-            return Err(Refusal::new(426, "/live is a WebSocket"));
+        if !has_token("upgrade", "websocket") || !has_token("connection", "upgrade") {
+            return Err(Refusal::new(426, "/live accepts WebSocket connections only"));
         }
-        if self.one("sec-websocket-version") != Some("13") {
-            return Err(Refusal::new(426, "/live speaks version 13 of the WebSocket protocol"));
+        if self.first_value("sec-websocket-version") != Some("13") {
+            return Err(Refusal::new(
+                426,
+                "/live supports version 13 of the WebSocket protocol only",
+            ));
         }
-        if self.all("origin").is_empty() {
-            return Err(Refusal::new(403, "a WebSocket must name its Origin"));
+        if self.values("origin").is_empty() {
+            return Err(Refusal::new(403, "a WebSocket request must have an Origin header"));
         }
-        // sixteen bytes in base64
-        match self.all("sec-websocket-key")[..] {
+        // 16 bytes in base64
+        match self.values("sec-websocket-key")[..] {
             [key] if key.len() == 24 && key.is_ascii() => Ok(key),
-            _ => Err(Refusal::new(400, "Sec-WebSocket-Key is missing or not one")),
+            _ => Err(Refusal::new(400, "Sec-WebSocket-Key is missing or invalid")),
         }
     }
 }
 
-/// Whether a read or write has only run out of time.
+/// Whether a read or write has timed out.
 pub fn is_timeout(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut)
 }
 
-/// The head of a response, with what keeps a page from being framed, sniffed, kept, or made to load
-/// anything from elsewhere.
-pub fn response_head(status: u16, port: u16, kind: &str, length: usize) -> String {
+/// The head of a response. Its headers forbid framing, MIME sniffing, caching, and loading anything from other
+/// servers.
+pub fn response_head(status: u16, port: u16, content_type: &str, length: usize) -> String {
     let reason = match status {
         200 => "OK",
         400 => "Bad Request",
@@ -178,14 +183,14 @@ pub fn response_head(status: u16, port: u16, kind: &str, length: usize) -> Strin
         503 => "Service Unavailable",
         _ => "Error",
     };
-    let more = match status {
+    let extra = match status {
         405 => "Allow: GET, HEAD\r\n",
         426 => "Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\n",
         _ => "",
     };
     format!(
         "HTTP/1.1 {status} {reason}\r\n\
-         Content-Type: {kind}; charset=utf-8\r\n\
+         Content-Type: {content_type}; charset=utf-8\r\n\
          Content-Length: {length}\r\n\
          Connection: close\r\n\
          Cache-Control: no-store\r\n\
@@ -196,39 +201,41 @@ pub fn response_head(status: u16, port: u16, kind: &str, length: usize) -> Strin
          worker-src data: blob:; style-src 'unsafe-inline'; img-src data: blob:; font-src data:; \
          connect-src 'self' ws://127.0.0.1:{port} ws://localhost:{port}; \
          base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n\
-         {more}\r\n"
+         {extra}\r\n"
     )
 }
 
-/// Answers and hangs up. Nobody is left to be told of a failure.
+/// Sends a response and closes the connection. Failures are ignored, since the client is gone then.
 pub fn respond(mut stream: TcpStream, head: &str, body: &[u8]) {
     let sent = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(body));
     if sent.is_ok() {
-        hang_up(stream, Duration::from_secs(1));
+        shut_down(stream, Duration::from_secs(1));
     }
 }
 
-/// Says why not, and hangs up.
+/// Sends a refusal and closes the connection.
 pub fn refuse(stream: TcpStream, port: u16, refusal: &Refusal) {
-    let body = format!("{}\n", refusal.why);
+    let body = format!("{}\n", refusal.reason);
     let head = response_head(refusal.status, port, "text/plain", body.len());
     respond(stream, &head, body.as_bytes());
 }
 
-/// Ends what is sent, and waits a little for the other side to do so: what it has sent and nobody
-/// read would otherwise make the system throw away what it has not yet received.
-pub fn hang_up(mut stream: TcpStream, patience: Duration) {
-    let deadline = Instant::now() + patience;
-    let mut room = [0; 4096];
+/// Closes the write side of a connection and waits up to `timeout` for the other side to close.
+///
+/// Unread input at the time of closing makes TCP reset the connection, and the other side may then lose data that
+/// it has not received yet.
+pub fn shut_down(mut stream: TcpStream, timeout: Duration) {
+    let deadline = Instant::now() + timeout;
+    let mut buffer = [0; 4096];
     if stream.shutdown(Shutdown::Write).is_err() {
         return;
     }
     loop {
-        let left = deadline.saturating_duration_since(Instant::now());
-        if left.is_zero() || stream.set_read_timeout(Some(left)).is_err() {
+        let remaining = deadline.saturating_duration_since(Instant::now());
+        if remaining.is_zero() || stream.set_read_timeout(Some(remaining)).is_err() {
             return;
         }
-        match stream.read(&mut room) {
+        match stream.read(&mut buffer) {
             Ok(0) | Err(_) => return,
             Ok(_) => {}
         }
@@ -247,8 +254,8 @@ mod tests {
     }
 
     #[test]
-    fn only_our_own_address_is_from_here() {
-        let status = |headers: &str| request(headers).is_from_here(8642).map_err(|r| r.status);
+    fn only_the_servers_own_address_is_accepted() {
+        let status = |headers: &str| request(headers).check_same_origin(8642).map_err(|r| r.status);
         for host in ["127.0.0.1:8642", "localhost:8642", "LOCALHOST:8642", "[::1]:8642"] {
             assert_eq!(status(&format!("Host: {host}\r\n")), Ok(()), "{host}");
             let both = format!("Host: {host}\r\nOrigin: http://127.0.0.1:8642\r\n");
@@ -267,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_websocket_needs() {
+    fn a_websocket_request_must_have_all_headers() {
         let good = "Upgrade: WebSocket\r\nConnection: keep-alive, Upgrade\r\nOrigin: x\r\n\
                     Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n";
         assert_eq!(request(good).websocket_key(), Ok("dGhlIHNhbXBsZSBub25jZQ=="));
@@ -287,9 +294,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bytes_are_a_request_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        fn any_bytes_are_parsed_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
             if let Ok(Some(request)) = Request::parse(&bytes) {
-                let _ = (request.is_from_here(1), request.websocket_key());
+                let _ = (request.check_same_origin(1), request.websocket_key());
             }
         }
     }

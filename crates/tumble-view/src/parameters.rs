@@ -1,17 +1,17 @@
-//! What a page may change, with its value, unit and a range that makes sense for a slider.
+//! The sliders of the page: key, value, unit and range of each number that can be changed.
 
 use tumble::{DVec3, Damping, MaterialOverride};
 use tumble_io::page::Parameter;
 use tumble_io::scene::{BodyScene, MassScene, Scene};
 
-use crate::setting::applies_at_once;
+use crate::scene_edit::applies_at_once;
 
-/// Of more bodies than this only the first are offered for changes.
-const MOST_BODIES: usize = 8;
+/// Only the first few bodies and walls of a scene have sliders.
+const MAX_TABLES: usize = 8;
 
-/// All that may be changed, in the order in which it is shown.
+/// The sliders for a scene, in the order in which the page shows them.
 pub fn parameters(scene: &Scene) -> Vec<Parameter> {
-    let mut list = List(Vec::new());
+    let mut list = ParameterList(Vec::new());
     list.log("dt", scene.dt, "s", (1e-5, 1e-2));
     list.vector("gravity", scene.gravity, "m/s²", 20.0);
     list.linear(
@@ -24,37 +24,38 @@ pub fn parameters(scene: &Scene) -> Vec<Parameter> {
         list.log("energy_tolerance", tolerance, "", (1e-12, 1e-2));
     }
     list.material("collision", &scene.collision.into());
-    if let Some(own) = &scene.walls_of_box {
-        list.material("box", &own.material);
+    if let Some(walls) = &scene.walls_of_box {
+        list.material("box", &walls.material);
     }
-    for (index, wall) in scene.walls.iter().enumerate().take(MOST_BODIES) {
+    for (index, wall) in scene.walls.iter().enumerate().take(MAX_TABLES) {
         let table = format!("wall.{index}");
         list.linear(&format!("{table}.offset"), wall.plane.offset, "m", (-2.0, 2.0));
         list.material(&table, &wall.material);
     }
-    for (index, body) in scene.bodies.iter().enumerate().take(MOST_BODIES) {
+    for (index, body) in scene.bodies.iter().enumerate().take(MAX_TABLES) {
         list.body(&format!("body.{index}"), body);
     }
     list.0
 }
 
-struct List(Vec<Parameter>);
+struct ParameterList(Vec<Parameter>);
 
-impl List {
-    /// A number for a slider over powers of ten; the range always holds the value.
+impl ParameterList {
+    /// Adds a logarithmic slider. The range is extended to include the value.
     fn log(&mut self, key: &str, value: f64, unit: &'static str, (min, max): (f64, f64)) {
-        // from nothing no power of ten leads anywhere
+        // zero has no place on a logarithmic scale
         if value <= 0.0 {
             return self.linear(key, value, unit, (0.0, max));
         }
-        self.put(key, value, unit, true, (min.min(value), max.max(value)));
+        self.push(key, value, unit, true, (min.min(value), max.max(value)));
     }
 
+    /// Adds a linear slider. The range is extended to include the value.
     fn linear(&mut self, key: &str, value: f64, unit: &'static str, (min, max): (f64, f64)) {
-        self.put(key, value, unit, false, (min.min(value), max.max(value)));
+        self.push(key, value, unit, false, (min.min(value), max.max(value)));
     }
 
-    fn put(
+    fn push(
         &mut self,
         key: &str,
         value: f64,
@@ -67,14 +68,14 @@ impl List {
         self.0.push(Parameter { key, value, unit, applies, log, min, max });
     }
 
-    /// The three components of a vector, as `key.0`, `key.1`, `key.2`.
-    fn vector(&mut self, key: &str, value: DVec3, unit: &'static str, most: f64) {
+    /// Adds the components of a vector as `key.0`, `key.1` and `key.2`, each from -max to max.
+    fn vector(&mut self, key: &str, value: DVec3, unit: &'static str, max: f64) {
         for (axis, component) in value.to_array().into_iter().enumerate() {
-            self.linear(&format!("{key}.{axis}"), component, unit, (-most, most));
+            self.linear(&format!("{key}.{axis}"), component, unit, (-max, max));
         }
     }
 
-    /// What a table says about its contacts.
+    /// Adds the contact parameters that a table of the scene sets.
     fn material(&mut self, table: &str, material: &MaterialOverride) {
         if let Some(k) = material.collision_stiffness {
             self.log(&format!("{table}.collision_stiffness"), k, "N/m", (1e2, 1e7));
@@ -102,6 +103,7 @@ impl List {
         }
     }
 
+    /// Adds the initial state, scale, mass and contact parameters of a body.
     fn body(&mut self, table: &str, body: &BodyScene) {
         let key = |name: &str| format!("{table}.{name}");
         self.vector(&key("initial_velocity"), body.initial_velocity, "m/s", 20.0);

@@ -1,35 +1,35 @@
-//! The scene as it is now, to go on from.
+//! The present state, written as a scene file.
 
 use tumble::{Prescribed, World};
 use tumble_io::scene::{BodyScene, MotionScene, Scene};
 
-use crate::setting::load;
+use crate::scene_edit::load;
 
-/// The scene as TOML, with every body where it is and as fast as it is now, copies one by one.
+/// The scene as TOML, with the present pose and velocity of every body and copies written one by one.
 ///
-/// What a scene cannot say is lost: friction springs hold anew from where particles are, and the ledger
-/// starts again.
+/// Friction springs and the energy ledger cannot be expressed in a scene: a run from the result starts without
+/// stretched springs and with an empty ledger.
 ///
 /// # Errors
-/// Why a run could not start from it.
+/// Why a run cannot start from the present state.
 pub fn to_toml(scene: &Scene, world: &World) -> Result<String, String> {
     let mut bodies = world.bodies();
     let mut saved = scene.clone();
     saved.bodies = Vec::with_capacity(world.body_count());
     for body in &scene.bodies {
         for name in body.names() {
-            let Some(now) = bodies.next() else { break };
-            let motion = at_phase(body.motion, world.time());
+            let Some(state) = bodies.next() else { break };
+            let motion = from_time(body.motion, world.time());
             let is_free = motion == MotionScene::Free;
             saved.bodies.push(BodyScene {
                 name,
                 motion,
-                position: Some(now.position()),
-                orientation: now.orientation(),
-                // a swing comes on top of what a prescribed body keeps
-                initial_velocity: if is_free { now.velocity() } else { body.initial_velocity },
+                position: Some(state.position()),
+                orientation: state.orientation(),
+                // of a prescribed body the scene holds the constant part; an oscillation is added to it
+                initial_velocity: if is_free { state.velocity() } else { body.initial_velocity },
                 initial_angular_velocity: if is_free {
-                    now.angular_velocity()
+                    state.angular_velocity()
                 } else {
                     body.initial_angular_velocity
                 },
@@ -43,15 +43,17 @@ pub fn to_toml(scene: &Scene, world: &World) -> Result<String, String> {
     let time = world.time();
     let text = format!("# The scene \"{}\" as it was at t = {time} s.\n{scene_text}", scene.name);
     load(scene, text.clone(), Vec::new())
-        .map_err(|why| format!("a run could not start from here: {why}"))?;
+        .map_err(|error| format!("a run cannot start from this state: {error}"))?;
     Ok(text)
 }
 
-/// A motion that goes on from `time` (s) as one that starts there.
-fn at_phase(mut motion: MotionScene, time: f64) -> MotionScene {
-    if let MotionScene::Prescribed(Prescribed { oscillation: Some(swing), .. }) = &mut motion {
-        let turns = (swing.frequency * time).fract();
-        swing.phase = (swing.phase + std::f64::consts::TAU * turns) % std::f64::consts::TAU;
+/// The motion whose t = 0 is `time` (s) of the given one: the phase of an oscillation moves on.
+fn from_time(mut motion: MotionScene, time: f64) -> MotionScene {
+    if let MotionScene::Prescribed(Prescribed { oscillation: Some(oscillation), .. }) = &mut motion
+    {
+        let turns = (oscillation.frequency * time).fract();
+        oscillation.phase =
+            (oscillation.phase + std::f64::consts::TAU * turns) % std::f64::consts::TAU;
     }
     motion
 }

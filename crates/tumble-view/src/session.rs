@@ -1,62 +1,65 @@
-//! The simulation that pages look at: its scene, its world, and what waits for a reset.
+//! A simulation that is viewed: its scene, its world, and the edits that wait for a reset.
 
 use std::time::Duration;
 
 use tumble::{MouseSpring, World};
 use tumble_io::scene::{Loaded, Scene};
 
-use crate::command::{Command, Setting};
-use crate::{head, save, setting};
+use crate::capacity::check_capacity;
+use crate::command::{Command, SceneEdit};
+use crate::save;
+use crate::scene_edit::{applies_at_once, load_edited};
+use crate::transfer::transfer_state;
 
-/// Simulated time that is not made in time is dropped: the motion then goes slower than asked, and
-/// does not run after what it has missed. In seconds of the clock.
-const MOST_OWED: f64 = 0.1;
+/// Longest backlog that the simulation catches up with, in seconds of the clock. When the machine is too slow
+/// for the chosen speed, the rest is dropped and the simulation runs slower than asked.
+const MAX_BACKLOG: f64 = 0.1;
 
-/// Without an order of the person, one second takes a second.
+/// The speed at the start: one simulated second per second.
 const REAL_TIME: Option<f64> = Some(1.0);
 
-/// A simulation on its way. It knows no clock: [`Session::owe`] tells it how much time has passed.
+/// A simulation with its scene. It reads no clock: [`Session::add_elapsed`] passes it the elapsed time.
 #[derive(Debug)]
 pub struct Session {
     /// The scene of the present model.
     scene: Scene,
     world: World,
-    /// The scene with everything that was set, and its world at t = 0.
+    /// The scene with all edits, pending ones included, and its world at t = 0.
     next_scene: Scene,
-    start: World,
-    /// Keys that are in `next_scene` but wait for a reset.
+    next_world: World,
+    /// Keys that are edited in `next_scene` and wait for a reset.
     pending: Vec<String>,
     playing: bool,
     speed: Option<f64>,
-    /// Simulated time to be made (s).
-    owed: f64,
-    baseline: f64,
-    /// What is being pulled.
-    hand: Option<MouseSpring>,
+    /// Simulated time that is due but not yet computed (s).
+    backlog: f64,
+    /// See [`Session::reference_energy`]; without the work of the mouse spring.
+    reference_energy: f64,
+    mouse_spring: Option<Pull>,
     error: Option<String>,
     revision: u64,
 }
 
 impl Session {
-    /// At t = 0, playing, a second in a second.
+    /// A session at t = 0, playing in real time.
     ///
     /// # Errors
-    /// Why the scene cannot be shown.
+    /// Why the viewer cannot show the scene.
     pub fn new(loaded: Loaded) -> Result<Self, String> {
-        head::can_be_shown(&loaded.world)?;
+        check_capacity(&loaded.world)?;
         let Loaded { mut scene, world } = loaded;
-        say_positions(&mut scene, &world);
+        write_positions(&mut scene, &world);
         Ok(Self {
             next_scene: scene.clone(),
-            start: world.clone(),
-            baseline: world.energy().total(),
-            hand: None,
+            next_world: world.clone(),
+            reference_energy: world.energy().total(),
+            mouse_spring: None,
             scene,
             world,
             pending: Vec::new(),
             playing: true,
             speed: REAL_TIME,
-            owed: 0.0,
+            backlog: 0.0,
             error: None,
             revision: 1,
         })
@@ -67,178 +70,185 @@ impl Session {
         &self.scene
     }
 
-    /// The scene that the next reset starts.
+    /// The scene that the next reset starts, with all edits.
     pub fn next_scene(&self) -> &Scene {
         &self.next_scene
     }
 
-    /// The world as it is now.
+    /// The present world.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// Whether time goes on.
+    /// Whether the simulation is running.
     pub fn is_playing(&self) -> bool {
         self.playing
     }
 
-    /// Simulated seconds a second; `None`: as fast as it goes.
+    /// Simulated seconds per second; `None`: as fast as possible.
     pub fn speed(&self) -> Option<f64> {
         self.speed
     }
 
-    /// The keys that were set and wait for a reset.
+    /// The keys whose edits wait for a reset.
     pub fn pending(&self) -> &[String] {
         &self.pending
     }
 
-    /// Why the simulation stands still, if it failed.
+    /// The error that stopped the simulation, if it failed.
     pub fn error(&self) -> Option<&str> {
         self.error.as_deref()
     }
 
-    /// Grows whenever what [`head`] says has changed.
+    /// A number that increases whenever the [header](crate::header) changes.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// What the total of the ledger is measured against (J): its value at t = 0, and what the person's hand
-    /// has added since, by settings and by pulling.
-    pub fn baseline(&self) -> f64 {
-        self.baseline + self.world.mouse_work()
+    /// The energy from which the residual of the ledger is measured (J): the total at t = 0, plus what edits
+    /// and the mouse spring have added since. The residual is then the error of the integrator alone.
+    pub fn reference_energy(&self) -> f64 {
+        self.reference_energy + self.world.pulled()
     }
 
-    /// Carries out a command; the answer, if there is one, is the scene to be saved.
+    /// Executes a command. Returns the scene file for [`Command::Save`], `None` for all others.
     ///
     /// # Errors
-    /// Why it cannot be carried out; nothing has changed then.
-    pub fn carry_out(&mut self, command: &Command) -> Result<Option<String>, String> {
+    /// Why the command cannot be executed; nothing has changed then.
+    pub fn execute(&mut self, command: &Command) -> Result<Option<String>, String> {
         match command {
             Command::Play => self.play()?,
             Command::Pause => self.playing = false,
             Command::Step => self.step_once()?,
             Command::Reset => self.reset(),
-            Command::Speed(speed) => (self.speed, self.owed) = (*speed, 0.0),
-            Command::Set(setting) => self.set(setting)?,
-            Command::Grab { body, particle, target } => self.grab(*body, *particle, *target)?,
-            Command::Move(target) => self.move_target(*target)?,
-            Command::Release => self.release(),
+            Command::Speed(speed) => (self.speed, self.backlog) = (*speed, 0.0),
+            Command::Set(edit) => self.edit(edit)?,
+            Command::AttachSpring { body, particle, target } => {
+                self.attach_spring(*body, *particle, *target)?;
+            }
+            Command::MoveSpring(target) => self.move_spring(*target)?,
+            Command::ReleaseSpring => self.release_spring(),
             Command::Save => return save::to_toml(&self.scene, &self.world).map(Some),
         }
         Ok(None)
     }
 
     fn play(&mut self) -> Result<(), String> {
-        self.still_sound()?;
-        (self.playing, self.owed) = (true, 0.0);
+        self.check_not_failed()?;
+        (self.playing, self.backlog) = (true, 0.0);
         Ok(())
     }
 
     fn step_once(&mut self) -> Result<(), String> {
-        self.still_sound()?;
+        self.check_not_failed()?;
         if self.playing {
-            return Err("a single step needs the motion to be paused".to_owned());
+            return Err("the simulation must be paused to take a single step".to_owned());
         }
         self.step();
         Ok(())
     }
 
-    fn still_sound(&self) -> Result<(), String> {
+    fn check_not_failed(&self) -> Result<(), String> {
         match &self.error {
             Some(_) => Err("the simulation has failed: reset first".to_owned()),
             None => Ok(()),
         }
     }
 
-    /// Back to t = 0, with everything that was set.
+    /// Goes back to t = 0 with all edits.
     fn reset(&mut self) {
         self.scene = self.next_scene.clone();
-        self.world = self.start.clone();
-        self.baseline = self.world.energy().total();
-        self.hand = None;
+        self.world = self.next_world.clone();
+        self.reference_energy = self.world.energy().total();
+        self.mouse_spring = None;
         self.pending.clear();
         self.error = None;
-        self.owed = 0.0;
+        self.backlog = 0.0;
         self.revision += 1;
     }
 
-    /// Changes a key: at once where the motion can go on, else at the next reset. A simulation that
-    /// has failed is changed at the next reset.
-    fn set(&mut self, new: &Setting) -> Result<(), String> {
-        let next = self.read(&self.next_scene, new)?;
-        if setting::applies_at_once(&new.key) && self.error.is_none() {
+    /// Edits the scene. The edit takes effect at once if the key allows it and the simulation has not failed,
+    /// otherwise at the next reset.
+    fn edit(&mut self, edit: &SceneEdit) -> Result<(), String> {
+        let next = Self::load_edited(&self.next_scene, edit)?;
+        if applies_at_once(&edit.key) && self.error.is_none() {
             let (scene, mut world) = if self.pending.is_empty() {
                 (next.scene.clone(), next.world.clone())
             } else {
-                let now = self.read(&self.scene, new)?;
-                (now.scene, now.world)
+                let present = Self::load_edited(&self.scene, edit)?;
+                (present.scene, present.world)
             };
-            setting::transplant(&self.world, &mut world)?;
-            // what the person's hand has changed is no error of the integrator
-            let residual = self.world.energy().total() - self.baseline();
-            self.baseline = world.energy().total() - residual;
-            // a hand holds on, if what it holds is still there
-            self.hand = self.hand.filter(|&hand| world.set_mouse_spring(Some(hand)));
-            (self.scene, self.world, self.owed) = (scene, world, 0.0);
-        } else if !self.pending.contains(&new.key) {
-            self.pending.push(new.key.clone());
+            transfer_state(&self.world, &mut world)?;
+            // an edit may change the total energy, but not the residual
+            let residual = self.world.energy().total() - self.reference_energy();
+            self.reference_energy = world.energy().total() - residual;
+            // attach the mouse spring to the new world, unless its particle no longer exists
+            self.mouse_spring = self.mouse_spring.filter(|&spring| world.pull(Some(spring)));
+            (self.scene, self.world, self.backlog) = (scene, world, 0.0);
+        } else if !self.pending.contains(&edit.key) {
+            self.pending.push(edit.key.clone());
         }
-        (self.next_scene, self.start) = (next.scene, next.world);
+        (self.next_scene, self.next_world) = (next.scene, next.world);
         self.revision += 1;
         Ok(())
     }
 
-    /// A scene with a key changed.
-    fn read(&self, scene: &Scene, new: &Setting) -> Result<Loaded, String> {
-        let mut loaded = setting::load_with(scene, new)?;
-        head::can_be_shown(&loaded.world)?;
-        say_positions(&mut loaded.scene, &loaded.world);
+    fn load_edited(scene: &Scene, edit: &SceneEdit) -> Result<Loaded, String> {
+        let mut loaded = load_edited(scene, edit)?;
+        check_capacity(&loaded.world)?;
+        write_positions(&mut loaded.scene, &loaded.world);
         Ok(loaded)
     }
 
-    /// A hand on a particle. Its work goes into the baseline, so that the residual stays the integrator's alone.
-    fn grab(&mut self, body: usize, particle: usize, target: [f64; 3]) -> Result<(), String> {
-        let hand = MouseSpring { body, particle, target: target.into() };
-        if !self.world.set_mouse_spring(Some(hand)) {
-            return Err(format!("there is no particle {particle} of a body {body} to pull there"));
+    fn attach_spring(
+        &mut self,
+        body: usize,
+        particle: usize,
+        target: [f64; 3],
+    ) -> Result<(), String> {
+        let spring = Pull { body, particle, target: target.into() };
+        if !self.world.pull(Some(spring)) {
+            return Err(format!(
+                "there is no particle {particle} in body {body} that the mouse spring could pull"
+            ));
         }
-        self.hand = Some(hand);
+        self.mouse_spring = Some(spring);
         Ok(())
     }
 
-    fn move_target(&mut self, target: [f64; 3]) -> Result<(), String> {
-        let hand = self.hand.ok_or("nothing is being pulled")?;
-        self.grab(hand.body, hand.particle, target)
+    fn move_spring(&mut self, target: [f64; 3]) -> Result<(), String> {
+        let spring = self.mouse_spring.ok_or("the mouse spring is not attached")?;
+        self.attach_spring(spring.body, spring.particle, target)
     }
 
-    fn release(&mut self) {
-        self.hand = None;
-        self.world.set_mouse_spring(None);
+    fn release_spring(&mut self) {
+        self.mouse_spring = None;
+        self.world.pull(None);
     }
 
-    /// Tells that so much time has passed while the motion was playing.
-    pub fn owe(&mut self, passed: Duration) {
+    /// Adds elapsed clock time. While the simulation is playing, it becomes simulated time that is due.
+    pub fn add_elapsed(&mut self, elapsed: Duration) {
         if let (true, Some(speed)) = (self.playing, self.speed) {
-            let most = (speed * MOST_OWED).max(self.world.dt());
-            self.owed = (self.owed + speed * passed.as_secs_f64()).min(most);
+            let max = (speed * MAX_BACKLOG).max(self.world.dt());
+            self.backlog = (self.backlog + speed * elapsed.as_secs_f64()).min(max);
         }
     }
 
-    /// How long it is until the next step is due; zero if it is, `None` if none ever is.
-    pub fn due_in(&self) -> Option<Duration> {
-        let missing = |speed: f64| ((self.world.dt() - self.owed) / speed).max(0.0);
-        let seconds = self.speed.map_or(0.0, missing);
-        // a wait longer than a day may as well be looked at again after a day
+    /// Time until the next step is due: zero if it is due now, `None` while paused.
+    pub fn time_to_next_step(&self) -> Option<Duration> {
+        let remaining = |speed: f64| ((self.world.dt() - self.backlog) / speed).max(0.0);
+        let seconds = self.speed.map_or(0.0, remaining);
+        // `Duration::from_secs_f64` panics on huge values
         self.playing.then(|| Duration::from_secs_f64(seconds.min(86_400.0)))
     }
 
-    /// Takes the steps that are due, as long as `go_on` says so; it is asked every few milliseconds at
-    /// most. Returns how many steps were taken.
-    pub fn advance(&mut self, go_on: &mut dyn FnMut() -> bool) -> u64 {
-        let (dt, batch) = (self.world.dt(), batch(&self.world));
+    /// Takes the steps that are due while `keep_going` returns true; it is called every few milliseconds at most.
+    /// Returns the number of steps taken.
+    pub fn advance(&mut self, keep_going: &mut dyn FnMut() -> bool) -> u64 {
+        let (dt, batch) = (self.world.dt(), steps_per_batch(&self.world));
         let mut taken = 0;
         while self.playing {
-            let due = self.speed.map_or(u64::MAX, |_| (self.owed / dt) as u64);
+            let due = self.speed.map_or(u64::MAX, |_| (self.backlog / dt) as u64);
             if due == 0 {
                 break;
             }
@@ -246,19 +256,19 @@ impl Session {
                 if !self.step() {
                     break;
                 }
-                self.owed -= dt;
+                self.backlog -= dt;
                 taken += 1;
             }
-            if !go_on() {
+            if !keep_going() {
                 break;
             }
         }
-        // without a speed there is nothing to keep up with
-        self.owed = self.owed.max(0.0);
+        // without a speed limit the backlog has become negative
+        self.backlog = self.backlog.max(0.0);
         taken
     }
 
-    /// One step; false when it failed, and the motion stands still from then on.
+    /// Takes one step. Returns false if it fails; the simulation is then paused with an error.
     fn step(&mut self) -> bool {
         let stepped = self.world.step();
         if let Err(error) = &stepped {
@@ -269,8 +279,8 @@ impl Session {
     }
 }
 
-/// Writes the place of every body into the scene, so that its coordinates can be set one by one.
-fn say_positions(scene: &mut Scene, world: &World) {
+/// Writes the default position of every body into the scene, so that its components can be edited one by one.
+fn write_positions(scene: &mut Scene, world: &World) {
     let mut index = 0;
     for body in &mut scene.bodies {
         if index < world.body_count() {
@@ -281,8 +291,8 @@ fn say_positions(scene: &mut Scene, world: &World) {
     }
 }
 
-/// Steps between two looks at the clock: some hundred thousand particles' worth.
-fn batch(world: &World) -> u64 {
+/// Number of steps between two readings of the clock, about 100,000 particle steps.
+fn steps_per_batch(world: &World) -> u64 {
     let particles: u64 = world.bodies().map(|body| body.particle_count() as u64).sum();
     (100_000 / (particles + 1)).clamp(1, 1000)
 }

@@ -1,4 +1,4 @@
-//! The thread that steps the simulation, takes commands between steps and publishes what is new.
+//! The simulation thread: executes commands between steps and publishes the results.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
@@ -6,39 +6,39 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use tungstenite::Message;
 
+use crate::broadcast::{Broadcast, PageId, Update};
 use crate::command::Command;
-use crate::hub::{Hub, News, PageId};
-use crate::{Session, frame, head};
+use crate::{Session, frame, header};
 
-/// How many commands may wait.
-pub const MOST_WAITING: usize = 256;
+/// Capacity of the command queue.
+pub const QUEUE_CAPACITY: usize = 256;
 
-/// Commands are looked for after so much stepping.
-const SLICE: Duration = Duration::from_millis(4);
-/// The least time between two frames.
-const FRAME: Duration = Duration::from_nanos(1_000_000_000 / 60);
-/// The least time between two statuses that say no more than the speed.
-const STATUS: Duration = Duration::from_millis(250);
+/// Longest time of stepping before the command queue is checked.
+const TIME_SLICE: Duration = Duration::from_millis(4);
+/// Shortest time between two frames.
+const FRAME_INTERVAL: Duration = Duration::from_nanos(1_000_000_000 / 60);
+/// Shortest time between two statuses that differ only in the measured speed.
+const STATUS_INTERVAL: Duration = Duration::from_millis(250);
 
-/// What the simulation is told.
+/// A message to the simulation thread.
 #[derive(Debug)]
-pub enum Input {
-    /// A page has come.
-    Joined,
-    /// A page has asked for something.
-    Said {
-        /// Which page.
+pub enum Event {
+    /// A page has connected.
+    Connected,
+    /// A page has sent a command.
+    Command {
+        /// The page.
         page: PageId,
-        /// What it asks for.
+        /// Its command.
         command: Command,
     },
-    /// It is over.
-    Close,
+    /// The server shuts down.
+    Shutdown,
 }
 
-/// The answer to a command that is not carried out.
-pub fn refused(why: &str) -> Message {
-    Message::text(serde_json::json!({"type": "refused", "why": why}).to_string())
+/// The reply to a command that was not executed.
+pub fn refusal(reason: &str) -> Message {
+    Message::text(serde_json::json!({"type": "refused", "why": reason}).to_string())
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -52,144 +52,147 @@ struct Status {
     error: Option<String>,
 }
 
-/// Steps and tells until it is over. Without a page, or paused, it sleeps.
-pub fn simulate(session: Session, hub: &Hub, inputs: &Receiver<Input>) {
+/// Runs the simulation until the server shuts down. It sleeps while it is paused or no page is connected.
+pub fn simulate(session: Session, broadcast: &Broadcast, events: &Receiver<Event>) {
     let now = Instant::now();
     let mut simulation = Simulation {
         session,
-        hub,
+        broadcast,
         revision: 0,
         status: None,
-        status_at: now,
+        next_status: now,
         has_moved: true,
-        frame_at: now,
+        next_frame: now,
         steps: 0,
-        stepping: Duration::ZERO,
+        stepping_time: Duration::ZERO,
     };
     simulation.publish();
     let mut last = Instant::now();
-    while let Some(waiting) = simulation.wait(inputs, &mut last) {
-        if !simulation.carry_out(waiting) {
+    while let Some(events) = simulation.wait(events, &mut last) {
+        if !simulation.process(events) {
             break;
         }
         let start = Instant::now();
-        simulation.session.owe(start - last);
+        simulation.session.add_elapsed(start - last);
         last = start;
         simulation.advance(start);
         simulation.publish();
     }
-    hub.close();
+    broadcast.close();
 }
 
 struct Simulation<'a> {
     session: Session,
-    hub: &'a Hub,
-    /// The revision of the head that was published.
+    broadcast: &'a Broadcast,
+    /// Revision of the session in the published header.
     revision: u64,
     status: Option<Status>,
-    status_at: Instant,
-    /// Whether there are steps that no frame has shown.
+    /// Earliest time of the next status that differs only in the measured speed.
+    next_status: Instant,
+    /// Whether the state has changed since the published frame.
     has_moved: bool,
-    /// When the next frame may be published.
-    frame_at: Instant,
-    /// Steps since the last status, and the time they took.
+    /// Earliest time of the next frame.
+    next_frame: Instant,
+    /// Steps since the speed was last measured, and the time spent on them.
     steps: u64,
-    stepping: Duration,
+    stepping_time: Duration,
 }
 
 impl Simulation<'_> {
-    /// Waits for the next step or command; what is to be carried out, `None` when nobody is left to
-    /// say anything.
-    fn wait(&self, inputs: &Receiver<Input>, last: &mut Instant) -> Option<Vec<Input>> {
-        let due = self.session.due_in().filter(|_| self.hub.page_count() > 0);
+    /// Waits until a step or frame is due or an event arrives. Returns the events that have arrived, or `None`
+    /// if no more can arrive.
+    fn wait(&self, events: &Receiver<Event>, last: &mut Instant) -> Option<Vec<Event>> {
+        let due = self.session.time_to_next_step().filter(|_| self.broadcast.page_count() > 0);
         let first = match due {
             None => {
-                let input = inputs.recv().ok()?;
-                // time that passed in sleep is not owed
+                let event = events.recv().ok()?;
+                // time spent asleep is not simulated
                 *last = Instant::now();
-                Some(input)
+                Some(event)
             }
             Some(due) => {
-                let frame = self.frame_at.saturating_duration_since(Instant::now());
-                let wait = match (due.is_zero(), self.has_moved) {
+                let to_frame = self.next_frame.saturating_duration_since(Instant::now());
+                let timeout = match (due.is_zero(), self.has_moved) {
                     (true, _) => Duration::ZERO,
-                    (false, true) => frame,
-                    // no need to wake for a step that no frame would show
-                    (false, false) => due.max(frame),
+                    (false, true) => to_frame,
+                    // a step before the next frame would not be seen
+                    (false, false) => due.max(to_frame),
                 };
-                match inputs.recv_timeout(wait) {
-                    Ok(input) => Some(input),
+                match events.recv_timeout(timeout) {
+                    Ok(event) => Some(event),
                     Err(RecvTimeoutError::Timeout) => None,
                     Err(RecvTimeoutError::Disconnected) => return None,
                 }
             }
         };
-        Some(first.into_iter().chain(inputs.try_iter().take(MOST_WAITING)).collect())
+        Some(first.into_iter().chain(events.try_iter().take(QUEUE_CAPACITY)).collect())
     }
 
-    /// Carries out commands in their order; false when it is over.
-    fn carry_out(&mut self, waiting: Vec<Input>) -> bool {
-        let mut waiting = waiting.into_iter().peekable();
-        while let Some(input) = waiting.next() {
-            let (page, command) = match input {
-                Input::Joined => continue,
-                Input::Close => return false,
-                Input::Said { page, command } => (page, command),
+    /// Processes events in order. Returns false if the server shuts down.
+    fn process(&mut self, events: Vec<Event>) -> bool {
+        let mut events = events.into_iter().peekable();
+        while let Some(event) = events.next() {
+            let (page, command) = match event {
+                Event::Connected => continue,
+                Event::Shutdown => return false,
+                Event::Command { page, command } => (page, command),
             };
-            // of a slider on its way, only the last place counts
-            if waiting.peek().is_some_and(|next| next.outdates(&command)) {
+            // of the many values of a dragged slider only the last counts
+            if events.peek().is_some_and(|next| next.supersedes(&command)) {
                 continue;
             }
             self.has_moved |= matches!(command, Command::Step | Command::Reset | Command::Set(_));
-            match self.session.carry_out(&command) {
+            match self.session.execute(&command) {
                 Ok(None) => {}
                 Ok(Some(toml)) => {
                     let saved = serde_json::json!({"type": "saved", "toml": toml});
-                    self.hub.answer(page, Message::text(saved.to_string()));
+                    self.broadcast.reply(page, Message::text(saved.to_string()));
                 }
-                Err(why) => self.hub.answer(page, refused(&why)),
+                Err(reason) => self.broadcast.reply(page, refusal(&reason)),
             }
         }
         true
     }
 
+    /// Takes the steps that are due, for one time slice at most.
     fn advance(&mut self, start: Instant) {
-        if self.hub.page_count() == 0 {
+        if self.broadcast.page_count() == 0 {
             return;
         }
-        let steps = self.session.advance(&mut || start.elapsed() < SLICE);
+        let steps = self.session.advance(&mut || start.elapsed() < TIME_SLICE);
         if steps > 0 {
             self.steps += steps;
-            self.stepping += start.elapsed();
+            self.stepping_time += start.elapsed();
             self.has_moved = true;
         }
     }
 
-    /// Tells all pages what is new, where it is time to.
+    /// Publishes what has changed, at the allowed rates.
     fn publish(&mut self) {
         let now = Instant::now();
-        let mut news = News { status: self.new_status(now), ..News::default() };
+        let mut update = Update { status: self.new_status(now), ..Update::default() };
         let revision = self.session.revision();
         if revision != self.revision {
-            news.head = Some(head::json(&self.session));
+            update.header = Some(header::json(&self.session));
             self.revision = revision;
         }
-        // the last moment before a pause is always shown
-        let is_due = now >= self.frame_at || news.head.is_some() || !self.session.is_playing();
+        // the last frame before a pause is always shown
+        let is_due =
+            now >= self.next_frame || update.header.is_some() || !self.session.is_playing();
         if self.has_moved && is_due && frame::is_drawable(self.session.world()) {
-            news.frame = Some(frame::record(&self.session));
+            update.frame = Some(frame::record(&self.session));
             self.has_moved = false;
-            // frames of many bodies leave time for the steps between them
-            self.frame_at = now + FRAME.max(4 * now.elapsed());
+            // encoding frames of many bodies takes at most a fifth of the time
+            self.next_frame = now + FRAME_INTERVAL.max(4 * now.elapsed());
         }
-        if news.head.is_some() || news.status.is_some() || news.frame.is_some() {
-            self.hub.publish(news);
+        if update.header.is_some() || update.status.is_some() || update.frame.is_some() {
+            self.broadcast.publish(update);
         }
     }
 
-    /// The status, if there is something new in it.
+    /// The status as JSON, if it has changed.
     fn new_status(&mut self, now: Instant) -> Option<String> {
-        let is_due = now >= self.status_at;
+        let is_due = now >= self.next_status;
         let before = self.status.as_ref();
         let mut status = Status {
             kind: "status",
@@ -199,32 +202,33 @@ impl Simulation<'_> {
             pending: self.session.pending().to_vec(),
             error: self.session.error().map(str::to_owned),
         };
-        // what a command has changed is told at once
+        // the effect of a command is published at once
         if before == Some(&status) && !is_due {
             return None;
         }
-        let seconds = self.stepping.as_secs_f64();
+        let seconds = self.stepping_time.as_secs_f64();
         if is_due && seconds > 0.0 {
             status.steps_per_second = (self.steps as f64 / seconds).round();
-            (self.steps, self.stepping) = (0, Duration::ZERO);
+            (self.steps, self.stepping_time) = (0, Duration::ZERO);
         }
         if before == Some(&status) {
             return None;
         }
-        self.status_at = now + STATUS;
+        self.next_status = now + STATUS_INTERVAL;
         let text = serde_json::to_string(&status).ok();
         self.status = Some(status);
         text
     }
 }
 
-impl Input {
-    /// Whether a command need not be carried out, because this one comes right after it.
-    fn outdates(&self, earlier: &Command) -> bool {
-        let Self::Said { command, .. } = self else { return false };
+impl Event {
+    /// Whether `earlier` need not be executed because this event follows it directly.
+    fn supersedes(&self, earlier: &Command) -> bool {
+        let Self::Command { command, .. } = self else { return false };
         match (command, earlier) {
             (Command::Set(new), Command::Set(old)) => new.key == old.key,
-            (Command::Move(_), Command::Move(_)) | (Command::Speed(_), Command::Speed(_)) => true,
+            (Command::MoveSpring(_), Command::MoveSpring(_))
+            | (Command::Speed(_), Command::Speed(_)) => true,
             _ => false,
         }
     }

@@ -1,4 +1,4 @@
-//! One page's WebSocket: a thread that reads its commands, and one that tells it what is new.
+//! The WebSocket of one page: one thread reads its commands, one writes to it.
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
@@ -11,17 +11,21 @@ use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Error, Message, WebSocket};
 
-use crate::command::{Command, MOST_BYTES};
-use crate::http::hang_up;
-use crate::hub::{Hub, Next, PageId, Seen};
-use crate::server::Limits;
-use crate::simulation::{Input, refused};
+use crate::broadcast::{Broadcast, Outgoing, PageId, Received};
+use crate::command::{Command, MAX_MESSAGE_BYTES};
+use crate::http::shut_down;
+use crate::limits::Limits;
+use crate::simulation::{Event, refusal};
 
-/// Grants the request for a WebSocket with this key and serves it until either side has enough.
+/// Accepts the WebSocket request with this key, whose first bytes after the head are `rest`, and serves the page
+/// until either side closes the connection.
+///
+/// # Errors
+/// When the stream fails during the handshake.
 pub fn serve(
     mut stream: TcpStream,
     (key, rest): (&str, Vec<u8>),
-    (hub, inputs): (&Arc<Hub>, &SyncSender<Input>),
+    (broadcast, events): (&Arc<Broadcast>, &SyncSender<Event>),
     limits: &Limits,
 ) -> io::Result<()> {
     let accept = derive_accept_key(key.as_bytes());
@@ -30,26 +34,26 @@ pub fn serve(
          Sec-WebSocket-Accept: {accept}\r\n\r\n"
     );
     stream.write_all(head.as_bytes())?;
-    // a frame is small and late soon
+    // small frames must not wait for more data
     stream.set_nodelay(true)?;
-    stream.set_read_timeout(Some(limits.silence))?;
-    let (write, last) = (stream.try_clone()?, stream.try_clone()?);
-    let page = hub.join();
+    stream.set_read_timeout(Some(limits.idle_timeout))?;
+    let (write_half, last) = (stream.try_clone()?, stream.try_clone()?);
+    let page = broadcast.add_page();
     let writer = {
-        let (hub, patience) = (Arc::clone(hub), limits.ping_after);
+        let (broadcast, ping_interval) = (Arc::clone(broadcast), limits.ping_interval);
         std::thread::Builder::new()
             .name("page writer".to_owned())
-            .spawn(move || tell(write, &hub, page, patience))
+            .spawn(move || write_messages(write_half, &broadcast, page, ping_interval))
     };
-    let farewell = match (&writer, inputs.send(Input::Joined)) {
-        (Ok(_), Ok(())) => listen(stream, rest, page, (hub, inputs)),
+    let close = match (&writer, events.send(Event::Connected)) {
+        (Ok(_), Ok(())) => read_commands(stream, rest, page, (broadcast, events)),
         _ => None,
     };
-    hub.dismiss(page, farewell);
-    // a panic of the writer ends its page and nothing else
+    broadcast.close_page(page, close);
+    // a panic in the writer ends only this connection
     let _ = writer.map(|writer| writer.join());
-    hub.leave(page);
-    hang_up(last, Duration::from_millis(500));
+    broadcast.remove_page(page);
+    shut_down(last, Duration::from_millis(500));
     Ok(())
 }
 
@@ -57,87 +61,89 @@ fn config() -> WebSocketConfig {
     WebSocketConfig::default()
         .read_buffer_size(8 << 10)
         .write_buffer_size(0)
-        .max_message_size(Some(MOST_BYTES))
-        .max_frame_size(Some(MOST_BYTES))
+        .max_message_size(Some(MAX_MESSAGE_BYTES))
+        .max_frame_size(Some(MAX_MESSAGE_BYTES))
 }
 
-/// Hands the page's commands to the simulation until it has no more; what to say at the end.
-fn listen(
+/// Passes the page's commands to the simulation until the connection ends. Returns the close frame to send.
+fn read_commands(
     stream: TcpStream,
     rest: Vec<u8>,
     page: PageId,
-    (hub, inputs): (&Hub, &SyncSender<Input>),
+    (broadcast, events): (&Broadcast, &SyncSender<Event>),
 ) -> Option<CloseFrame> {
     let mut socket =
         WebSocket::from_partially_read(ReadOnly(stream), rest, Role::Server, Some(config()));
     loop {
         match socket.read() {
             Ok(Message::Text(text)) => match Command::parse(&text) {
-                // when too many commands wait, the page waits too
-                Ok(command) => inputs.send(Input::Said { page, command }).ok()?,
-                Err(why) => hub.answer(page, refused(&why)),
+                // blocks while the queue is full, which slows the page down
+                Ok(command) => events.send(Event::Command { page, command }).ok()?,
+                Err(reason) => broadcast.reply(page, refusal(&reason)),
             },
             Ok(Message::Binary(_)) => {
-                hub.answer(page, refused("this is no command: commands are text"));
+                broadcast.reply(page, refusal("not a command: commands are text messages"));
             }
-            Ok(Message::Ping(data)) => hub.answer(page, Message::Pong(data)),
+            Ok(Message::Ping(data)) => broadcast.reply(page, Message::Pong(data)),
             Ok(Message::Pong(_) | Message::Frame(_)) => {}
-            Ok(Message::Close(farewell)) => return farewell,
+            Ok(Message::Close(close)) => return close,
             Err(Error::Capacity(_)) => {
-                let reason = format!("a message may have at most {MOST_BYTES} bytes").into();
+                let reason = format!("a message may have at most {MAX_MESSAGE_BYTES} bytes").into();
                 return Some(CloseFrame { code: CloseCode::Size, reason });
             }
             Err(Error::Protocol(_) | Error::Utf8(_)) => {
-                let reason = "this is no WebSocket message".into();
+                let reason = "not a WebSocket message".into();
                 return Some(CloseFrame { code: CloseCode::Protocol, reason });
             }
-            // gone, or silent for too long
+            // disconnected, or idle for too long
             Err(_) => return None,
         }
     }
 }
 
-/// Tells the page what is new until it is gone or takes nothing any more.
-fn tell(stream: TcpStream, hub: &Hub, page: PageId, patience: Duration) {
-    let Ok(shut) = stream.try_clone() else { return };
+/// Sends messages to the page until the connection ends.
+fn write_messages(stream: TcpStream, broadcast: &Broadcast, page: PageId, ping_interval: Duration) {
+    let Ok(handle) = stream.try_clone() else { return };
     let mut socket = WebSocket::from_raw_socket(stream, Role::Server, Some(config()));
-    let mut seen = Seen::default();
-    let mut ping_at = Instant::now() + patience;
+    let mut received = Received::default();
+    let mut next_ping = Instant::now() + ping_interval;
     loop {
-        let quiet = ping_at.saturating_duration_since(Instant::now());
-        // a page that only looks says nothing by itself, but it answers
-        let message = if quiet.is_zero() {
-            ping_at += patience;
-            Next::Send(Message::Ping(Default::default()))
+        let to_ping = next_ping.saturating_duration_since(Instant::now());
+        // a page without input sends nothing but pongs; they keep the connection from being idle
+        let outgoing = if to_ping.is_zero() {
+            next_ping += ping_interval;
+            Outgoing::Message(Message::Ping(Default::default()))
         } else {
-            hub.next(page, &mut seen, quiet)
+            broadcast.wait(page, &mut received, to_ping)
         };
-        let message = match message {
-            Next::Send(message) => message,
-            Next::Nothing => continue,
-            Next::Farewell(farewell) => {
-                let _ = socket.close(farewell);
+        let message = match outgoing {
+            Outgoing::Message(message) => message,
+            Outgoing::TimedOut => continue,
+            Outgoing::Close(close) => {
+                let _ = socket.close(close);
                 let _ = socket.flush();
-                // wakes the reader, if it still reads
-                let _ = shut.shutdown(Shutdown::Read);
+                // unblocks the reader
+                let _ = handle.shutdown(Shutdown::Read);
                 return;
             }
         };
         if socket.send(message).is_err() {
-            let _ = shut.shutdown(Shutdown::Both);
+            let _ = handle.shutdown(Shutdown::Both);
             return;
         }
     }
 }
 
-/// The reader's end. What the protocol wants answered is handed to the writer, so that two threads never
-/// write over each other; what the reader's own socket would write goes nowhere.
+/// A stream whose writes are discarded.
+///
+/// The reader's `WebSocket` would answer pings and close frames by itself. Two threads must not write to one
+/// connection, so those answers are queued for the writer thread instead.
 #[derive(Debug)]
 struct ReadOnly(TcpStream);
 
 impl Read for ReadOnly {
-    fn read(&mut self, room: &mut [u8]) -> io::Result<usize> {
-        self.0.read(room)
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.0.read(buffer)
     }
 }
 

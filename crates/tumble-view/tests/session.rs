@@ -1,4 +1,4 @@
-//! The simulation behind the viewer: no sockets, no clock.
+//! The session of the viewer, without sockets and without a clock.
 
 #![allow(clippy::unwrap_used)]
 
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use tumble::DVec3;
 use tumble_io::scene::{LoadOptions, Loaded, Source, load_builtin, load_text};
-use tumble_view::{Command, Session, frame, head};
+use tumble_view::{Command, Session, frame, header};
 
 const SCENE: &str = "
 dt = 1e-3
@@ -41,22 +41,22 @@ fn session() -> Session {
     Session::new(loaded(SCENE)).unwrap()
 }
 
-fn say(session: &mut Session, text: &str) -> Result<Option<String>, String> {
-    session.carry_out(&Command::parse(text)?)
+fn send(session: &mut Session, text: &str) -> Result<Option<String>, String> {
+    session.execute(&Command::parse(text)?)
 }
 
 fn set(session: &mut Session, key: &str, value: &str) -> Result<(), String> {
-    say(session, &format!("{{\"type\":\"set\",\"key\":\"{key}\",\"value\":{value}}}")).map(|_| ())
+    send(session, &format!("{{\"type\":\"set\",\"key\":\"{key}\",\"value\":{value}}}")).map(|_| ())
 }
 
-/// Plays for so many steps, however long they take.
+/// Takes this many single steps, then plays on unless the simulation has failed.
 fn play(session: &mut Session, steps: u64) {
-    say(session, "{\"type\":\"pause\"}").unwrap();
+    send(session, "{\"type\":\"pause\"}").unwrap();
     for _ in 0..steps {
-        say(session, "{\"type\":\"step\"}").unwrap();
+        send(session, "{\"type\":\"step\"}").unwrap();
     }
     if session.error().is_none() {
-        say(session, "{\"type\":\"play\"}").unwrap();
+        send(session, "{\"type\":\"play\"}").unwrap();
     }
 }
 
@@ -64,48 +64,48 @@ fn float(record: &[u8], at: usize) -> f64 {
     f64::from_le_bytes(record[at..at + 8].try_into().unwrap())
 }
 
-/// How far the ledger is off (J).
+/// The residual of the energy ledger (J).
 fn residual(session: &Session) -> f64 {
-    session.world().energy().total() - session.baseline()
+    session.world().energy().total() - session.reference_energy()
 }
 
 #[test]
-fn time_goes_as_fast_as_it_is_told() {
+fn the_simulation_runs_at_the_chosen_speed() {
     let mut session = session();
-    let go = &mut || true;
-    assert_eq!(session.advance(go), 0);
-    session.owe(Duration::from_micros(20_500));
-    assert_eq!(session.advance(go), 20);
-    // what is left of a step is not lost
-    session.owe(Duration::from_micros(600));
-    assert_eq!(session.advance(go), 1);
-    say(&mut session, "{\"type\":\"speed\",\"value\":0.1}").unwrap();
-    session.owe(Duration::from_millis(55));
-    assert_eq!(session.advance(go), 5);
-    assert!((session.due_in().unwrap().as_secs_f64() - 0.005).abs() < 1e-9);
-    say(&mut session, "{\"type\":\"speed\",\"value\":null}").unwrap();
-    assert_eq!(session.due_in(), Some(Duration::ZERO));
-    let mut looks = 0;
+    let always = &mut || true;
+    assert_eq!(session.advance(always), 0);
+    session.add_elapsed(Duration::from_micros(20_500));
+    assert_eq!(session.advance(always), 20);
+    // the rest of a step carries over
+    session.add_elapsed(Duration::from_micros(600));
+    assert_eq!(session.advance(always), 1);
+    send(&mut session, "{\"type\":\"speed\",\"value\":0.1}").unwrap();
+    session.add_elapsed(Duration::from_millis(55));
+    assert_eq!(session.advance(always), 5);
+    assert!((session.time_to_next_step().unwrap().as_secs_f64() - 0.005).abs() < 1e-9);
+    send(&mut session, "{\"type\":\"speed\",\"value\":null}").unwrap();
+    assert_eq!(session.time_to_next_step(), Some(Duration::ZERO));
+    let mut calls = 0;
     let taken = session.advance(&mut || {
-        looks += 1;
-        looks < 3
+        calls += 1;
+        calls < 3
     });
     assert!(taken >= 3, "{taken}");
-    say(&mut session, "{\"type\":\"pause\"}").unwrap();
-    session.owe(Duration::from_secs(1));
-    assert_eq!((session.advance(go), session.due_in()), (0, None));
+    send(&mut session, "{\"type\":\"pause\"}").unwrap();
+    session.add_elapsed(Duration::from_secs(1));
+    assert_eq!((session.advance(always), session.time_to_next_step()), (0, None));
 }
 
 #[test]
-fn time_that_is_not_made_is_dropped() {
+fn a_long_backlog_is_dropped() {
     let mut session = session();
-    session.owe(Duration::from_secs(3600));
+    session.add_elapsed(Duration::from_secs(3600));
     let steps = session.advance(&mut || true);
     assert!((99..=100).contains(&steps), "{steps}");
 }
 
 #[test]
-fn a_live_motion_is_that_of_a_run() {
+fn a_live_simulation_has_the_same_states_as_a_run() {
     let mut session = session();
     play(&mut session, 500);
     let mut world = loaded(SCENE).world;
@@ -114,16 +114,16 @@ fn a_live_motion_is_that_of_a_run() {
 }
 
 #[test]
-fn a_step_is_for_pauses() {
+fn a_single_step_requires_a_pause() {
     let mut session = session();
-    assert!(say(&mut session, "{\"type\":\"step\"}").unwrap_err().contains("paused"));
-    say(&mut session, "{\"type\":\"pause\"}").unwrap();
-    say(&mut session, "{\"type\":\"step\"}").unwrap();
+    assert!(send(&mut session, "{\"type\":\"step\"}").unwrap_err().contains("paused"));
+    send(&mut session, "{\"type\":\"pause\"}").unwrap();
+    send(&mut session, "{\"type\":\"step\"}").unwrap();
     assert_eq!(session.world().state().step, 1);
 }
 
 #[test]
-fn what_is_set_at_once_changes_the_motion_and_not_the_residual() {
+fn an_edit_that_applies_at_once_does_not_change_the_residual() {
     let mut session = session();
     play(&mut session, 300);
     for (key, value) in [
@@ -145,7 +145,7 @@ fn what_is_set_at_once_changes_the_motion_and_not_the_residual() {
         ("body.1.friction_stiffness", "0.9"),
     ] {
         let before = (residual(&session), session.revision(), session.world().state().clone());
-        set(&mut session, key, value).unwrap_or_else(|why| panic!("{key} = {value}: {why}"));
+        set(&mut session, key, value).unwrap_or_else(|error| panic!("{key} = {value}: {error}"));
         let after = (residual(&session), session.world().state());
         assert!((after.0 - before.0).abs() < 1e-9, "{key}: {} {}", before.0, after.0);
         assert_eq!((after.1.step, after.1.time), (before.2.step, before.2.time), "{key}");
@@ -162,7 +162,7 @@ fn what_is_set_at_once_changes_the_motion_and_not_the_residual() {
 }
 
 #[test]
-fn another_step_keeps_the_time() {
+fn a_change_of_dt_moves_time_to_the_next_whole_step() {
     let mut session = session();
     play(&mut session, 100);
     set(&mut session, "dt", "3e-4").unwrap();
@@ -170,17 +170,17 @@ fn another_step_keeps_the_time() {
     assert_eq!((state.step, state.time), (334, 334.0 * 3e-4));
     play(&mut session, 1);
     assert_eq!(session.error(), None);
-    // beyond what a double can count
+    // the step number would not be exact as a double
     assert!(set(&mut session, "dt", "1e-300").is_err());
     assert_eq!(session.world().dt(), 3e-4);
 }
 
 #[test]
-fn what_is_impossible_is_refused_in_the_readers_words_and_changes_nothing() {
+fn an_invalid_edit_is_refused_with_the_readers_message_and_changes_nothing() {
     let mut session = session();
     play(&mut session, 50);
     let before = (session.scene().to_toml(), session.world().state().clone(), session.revision());
-    for (key, value, why) in [
+    for (key, value, expected) in [
         ("collision.collision_stiffness", "-1", "collision_stiffness"),
         ("dt", "0.5", "stable only up to"),
         ("dt", "0", "`dt`"),
@@ -199,9 +199,9 @@ fn what_is_impossible_is_refused_in_the_readers_words_and_changes_nothing() {
         ("body.1.copies.count", "[100, 100, 100]", "at most"),
         ("body.1.copies.count", "[2, 100, 110]", "shows at most"),
     ] {
-        let refused = set(&mut session, key, value).unwrap_err();
-        assert!(why.split('|').any(|why| refused.contains(why)), "{key} = {value}: {refused}");
-        assert!(!refused.contains("-->"), "{refused}");
+        let error = set(&mut session, key, value).unwrap_err();
+        assert!(expected.split('|').any(|part| error.contains(part)), "{key} = {value}: {error}");
+        assert!(!error.contains("-->"), "{error}");
     }
     let after = (session.scene().to_toml(), session.world().state().clone(), session.revision());
     assert_eq!(before, after);
@@ -209,7 +209,7 @@ fn what_is_impossible_is_refused_in_the_readers_words_and_changes_nothing() {
 }
 
 #[test]
-fn how_bodies_look_and_start_waits_for_a_reset() {
+fn edits_of_shape_mass_and_initial_state_wait_for_a_reset() {
     let mut session = session();
     play(&mut session, 50);
     set(&mut session, "body.0.scale", "0.5").unwrap();
@@ -218,11 +218,11 @@ fn how_bodies_look_and_start_waits_for_a_reset() {
     set(&mut session, "body.0.mass", "7").unwrap();
     assert_eq!(session.pending().len(), 4);
     assert_eq!(session.world().body_count(), 3);
-    // and is kept by what does not wait
+    // an edit that applies at once leaves them pending
     set(&mut session, "gravity.1", "-2").unwrap();
     assert_eq!(session.world().model().gravity.y, -2.0);
     assert_eq!(session.world().body_count(), 3);
-    say(&mut session, "{\"type\":\"reset\"}").unwrap();
+    send(&mut session, "{\"type\":\"reset\"}").unwrap();
     assert!(session.pending().is_empty());
     let world = session.world();
     assert_eq!((world.time(), world.body_count(), world.model().gravity.y), (0.0, 4, -2.0));
@@ -231,34 +231,34 @@ fn how_bodies_look_and_start_waits_for_a_reset() {
 }
 
 #[test]
-fn a_failed_simulation_says_so_and_a_reset_mends_it() {
+fn a_failed_simulation_reports_its_error_and_a_reset_recovers_from_it() {
     let text =
         SCENE.replace("initial_velocity = [1.0, 0.0, 0.5]", "initial_velocity = [0, -3e4, 0]");
     let mut session = Session::new(loaded(&text)).unwrap();
-    session.owe(Duration::from_secs(1));
+    session.add_elapsed(Duration::from_secs(1));
     session.advance(&mut || true);
     assert!(session.error().unwrap().contains("diverged"), "{:?}", session.error());
     assert!(!session.is_playing());
-    assert!(say(&mut session, "{\"type\":\"play\"}").unwrap_err().contains("reset first"));
-    assert!(say(&mut session, "{\"type\":\"step\"}").unwrap_err().contains("reset first"));
+    assert!(send(&mut session, "{\"type\":\"play\"}").unwrap_err().contains("reset first"));
+    assert!(send(&mut session, "{\"type\":\"step\"}").unwrap_err().contains("reset first"));
     set(&mut session, "body.0.initial_velocity", "[0, 0, 0]").unwrap();
     set(&mut session, "dt", "5e-4").unwrap();
     assert_eq!(session.pending().len(), 2);
-    say(&mut session, "{\"type\":\"reset\"}").unwrap();
+    send(&mut session, "{\"type\":\"reset\"}").unwrap();
     assert_eq!((session.error(), session.world().dt()), (None, 5e-4));
     play(&mut session, 100);
     assert_eq!(session.error(), None);
 }
 
 #[test]
-fn what_is_saved_goes_on_as_the_live_motion_does() {
+fn a_saved_scene_continues_like_the_live_simulation() {
     let without_friction = SCENE.replace("friction_stiffness = 0.4", "");
     let mut session = Session::new(loaded(&without_friction)).unwrap();
     play(&mut session, 150);
     set(&mut session, "gravity.1", "-5").unwrap();
     set(&mut session, "body.0.mass", "9").unwrap();
     play(&mut session, 150);
-    let toml = say(&mut session, "{\"type\":\"save\"}").unwrap().unwrap();
+    let toml = send(&mut session, "{\"type\":\"save\"}").unwrap().unwrap();
     assert!(toml.starts_with("# The scene \"test\" as it was at t = 0.3"), "{toml}");
     let mut world = loaded(&toml).world;
     assert_eq!(world.body_count(), 3);
@@ -275,44 +275,45 @@ fn what_is_saved_goes_on_as_the_live_motion_does() {
 }
 
 #[test]
-fn every_built_in_scene_can_be_viewed_changed_and_saved() {
+fn every_built_in_scene_can_be_viewed_edited_and_saved() {
     for scene in tumble_io::scene::BUILTIN {
         let loaded = load_builtin(scene.name, &LoadOptions::default()).unwrap().unwrap();
         let mut session = Session::new(loaded).unwrap();
         play(&mut session, 20);
-        let head: serde_json::Value = serde_json::from_str(&head::json(&session)).unwrap();
-        for parameter in head["parameters"].as_array().unwrap() {
+        let header: serde_json::Value = serde_json::from_str(&header::json(&session)).unwrap();
+        for parameter in header["parameters"].as_array().unwrap() {
             let (key, value) = (parameter["key"].as_str().unwrap(), parameter["value"].to_string());
-            set(&mut session, key, &value).unwrap_or_else(|why| panic!("{}: {why}", scene.name));
+            set(&mut session, key, &value)
+                .unwrap_or_else(|error| panic!("{}: {error}", scene.name));
             let (low, high) =
                 (parameter["min"].as_f64().unwrap(), parameter["max"].as_f64().unwrap());
             let value = parameter["value"].as_f64().unwrap();
             assert!(low <= value && value <= high && low < high, "{parameter}");
         }
         play(&mut session, 5);
-        say(&mut session, "{\"type\":\"save\"}").unwrap().unwrap();
+        send(&mut session, "{\"type\":\"save\"}").unwrap().unwrap();
         assert_eq!(session.error(), None, "{}", scene.name);
     }
 }
 
 #[test]
-fn head_and_frame_are_as_described() {
+fn header_and_frame_have_the_documented_format() {
     let mut session = session();
     play(&mut session, 400);
-    let head: serde_json::Value = serde_json::from_str(&head::json(&session)).unwrap();
+    let header: serde_json::Value = serde_json::from_str(&header::json(&session)).unwrap();
     assert_eq!(
-        (&head["type"], &head["live"], &head["name"]),
+        (&header["type"], &header["live"], &header["name"]),
         (&"head".into(), &true.into(), &"test".into())
     );
     // the copies share a shape
-    assert_eq!(head["shapes"].as_array().unwrap().len(), 2);
-    assert_eq!(head["bodies"][2]["shape"], 1);
-    assert_eq!(head["shapes"][0]["particle_count"], 42);
-    assert!(head["shapes"][0]["particles"].is_null());
-    assert_eq!(head["walls"].as_array().unwrap().len(), 6);
-    assert_eq!(head["walls"][0]["friction"], 0.4);
-    assert_eq!(head["box"]["max"][1], 1.0);
-    let vertices = head["shapes"][0]["vertices"].as_str().unwrap();
+    assert_eq!(header["shapes"].as_array().unwrap().len(), 2);
+    assert_eq!(header["bodies"][2]["shape"], 1);
+    assert_eq!(header["shapes"][0]["particle_count"], 42);
+    assert!(header["shapes"][0]["particles"].is_null());
+    assert_eq!(header["walls"].as_array().unwrap().len(), 6);
+    assert_eq!(header["walls"][0]["friction"], 0.4);
+    assert_eq!(header["box"]["max"][1], 1.0);
+    let vertices = header["shapes"][0]["vertices"].as_str().unwrap();
     assert_eq!(vertices.len(), (42 * 12usize).div_ceil(3) * 4);
 
     let record = frame::record(&session);
@@ -333,45 +334,45 @@ fn head_and_frame_are_as_described() {
         let force = session.world().contact_wrench(number).force;
         assert!((body(number, 17) - force.y).abs() <= 1e-6 * force.length());
     }
-    // the first body lies on the floor by now
+    // the first body lies on the floor
     assert!(body(0, 17) > 0.0);
 }
 
 #[test]
-fn a_hand_pulls_a_body_and_its_work_is_accounted_for() {
+fn the_mouse_spring_pulls_a_body_and_its_work_is_not_in_the_residual() {
     let mut session = session();
-    say(&mut session, "{\"type\":\"pause\"}").unwrap();
+    send(&mut session, "{\"type\":\"pause\"}").unwrap();
     let grab = "{\"type\":\"grab\",\"body\":0,\"particle\":0,\"target\":[-0.5,0.5,0]}";
-    say(&mut session, grab).unwrap();
-    let before = session.baseline();
+    send(&mut session, grab).unwrap();
+    let before = session.reference_energy();
     for _ in 0..500 {
-        say(&mut session, "{\"type\":\"step\"}").unwrap();
+        send(&mut session, "{\"type\":\"step\"}").unwrap();
     }
-    say(&mut session, "{\"type\":\"move\",\"target\":[-0.5,0.6,0.5]}").unwrap();
+    send(&mut session, "{\"type\":\"move\",\"target\":[-0.5,0.6,0.5]}").unwrap();
     for _ in 0..500 {
-        say(&mut session, "{\"type\":\"step\"}").unwrap();
+        send(&mut session, "{\"type\":\"step\"}").unwrap();
     }
-    let place = session.world().body(0).particle(0).0;
-    assert!((place - DVec3::new(-0.5, 0.6, 0.5)).length() < 0.1, "{place}");
-    assert!(session.baseline() > before, "the work of the hand");
-    let residual = session.world().energy().total() - session.baseline();
-    let in_play = session.world().energy().kinetic + session.world().mouse_work();
-    assert!(residual.abs() < 0.02 * in_play, "{residual} {in_play}");
-    // what is set holds on, what is reset lets go
-    say(&mut session, "{\"type\":\"set\",\"key\":\"gravity.1\",\"value\":-1.62}").unwrap();
-    say(&mut session, "{\"type\":\"move\",\"target\":[0,2,0]}").unwrap();
-    say(&mut session, "{\"type\":\"reset\"}").unwrap();
-    assert!(say(&mut session, "{\"type\":\"move\",\"target\":[0,2,0]}").is_err());
-    say(&mut session, "{\"type\":\"release\"}").unwrap();
+    let position = session.world().body(0).particle(0).0;
+    assert!((position - DVec3::new(-0.5, 0.6, 0.5)).length() < 0.1, "{position}");
+    assert!(session.reference_energy() > before, "the mouse spring does work");
+    let residual = session.world().energy().total() - session.reference_energy();
+    let scale = session.world().energy().kinetic + session.world().pulled();
+    assert!(residual.abs() < 0.02 * scale, "{residual} {scale}");
+    // an edit keeps the spring attached, a reset releases it
+    send(&mut session, "{\"type\":\"set\",\"key\":\"gravity.1\",\"value\":-1.62}").unwrap();
+    send(&mut session, "{\"type\":\"move\",\"target\":[0,2,0]}").unwrap();
+    send(&mut session, "{\"type\":\"reset\"}").unwrap();
+    assert!(send(&mut session, "{\"type\":\"move\",\"target\":[0,2,0]}").is_err());
+    send(&mut session, "{\"type\":\"release\"}").unwrap();
 }
 
 #[test]
-fn what_is_not_there_cannot_be_grabbed() {
+fn the_mouse_spring_needs_an_existing_particle() {
     let mut session = session();
     for (body, particle) in [(0, 999_999), (999, 0)] {
         let grab = format!(
             "{{\"type\":\"grab\",\"body\":{body},\"particle\":{particle},\"target\":[0,0,0]}}"
         );
-        assert!(say(&mut session, &grab).unwrap_err().contains("there is no particle"));
+        assert!(send(&mut session, &grab).unwrap_err().contains("there is no particle"));
     }
 }

@@ -1,4 +1,4 @@
-//! Whatever pages ask for, in any order: the simulation goes on, or says why not.
+//! Random commands in random order: each is executed or refused with a reason.
 
 #![allow(clippy::unwrap_used)]
 
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 use tumble_io::scene::{LoadOptions, Loaded, Source, load_text};
-use tumble_view::{Command, Session, frame, head};
+use tumble_view::{Command, Session, frame, header};
 
 const SCENE: &str = "
 dt = 1e-3
@@ -83,7 +83,7 @@ fn value() -> impl Strategy<Value = String> {
             2 => (-2..6).prop_map(|x: i32| x.to_string()),
         ]
     };
-    let odd = prop::sample::select(vec![
+    let unusual = prop::sample::select(vec![
         "null",
         "true",
         "[]",
@@ -101,14 +101,14 @@ fn value() -> impl Strategy<Value = String> {
     prop_oneof![
         5 => number(),
         2 => prop::collection::vec(number(), 3).prop_map(|v| format!("[{}]", v.join(","))),
-        2 => odd.prop_map(str::to_owned),
+        2 => unusual.prop_map(str::to_owned),
     ]
 }
 
 fn message() -> impl Strategy<Value = String> {
-    let plain = prop::sample::select(vec!["play", "pause", "step", "reset", "save", "release"]);
+    let simple = prop::sample::select(vec!["play", "pause", "step", "reset", "save", "release"]);
     prop_oneof![
-        4 => plain.prop_map(|kind| format!("{{\"type\":\"{kind}\"}}")),
+        4 => simple.prop_map(|kind| format!("{{\"type\":\"{kind}\"}}")),
         6 => (key(), value())
             .prop_map(|(k, v)| format!("{{\"type\":\"set\",\"key\":\"{k}\",\"value\":{v}}}")),
         1 => value().prop_map(|v| format!("{{\"type\":\"speed\",\"value\":{v}}}")),
@@ -118,40 +118,40 @@ fn message() -> impl Strategy<Value = String> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
     #[test]
-    fn any_commands_in_any_order(messages in prop::collection::vec(message(), 1..25)) {
+    fn any_sequence_of_commands_is_executed_or_refused(messages in prop::collection::vec(message(), 1..25)) {
         let mut session = Session::new(load(SCENE)).unwrap();
         for message in messages {
             let Ok(command) = Command::parse(&message) else { continue };
             let before = (session.revision(), session.world().state().clone());
-            let residual = session.world().energy().total() - session.baseline();
-            let answer = session.carry_out(&command);
+            let residual = session.world().energy().total() - session.reference_energy();
+            let result = session.execute(&command);
             if matches!(command, Command::Set(_)) && session.error().is_none() {
-                let now = session.world().energy().total() - session.baseline();
-                let scale = session.world().energy().total().abs() + session.baseline().abs();
-                prop_assert!((now - residual).abs() <= 1e-9 * (1.0 + scale), "{message}");
+                let after = session.world().energy().total() - session.reference_energy();
+                let scale = session.world().energy().total().abs() + session.reference_energy().abs();
+                prop_assert!((after - residual).abs() <= 1e-9 * (1.0 + scale), "{message}");
             }
-            match answer {
-                // what was saved is a scene
+            match result {
+                // the saved text is a valid scene
                 Ok(Some(toml)) => { load(&toml); }
                 Ok(None) => {}
-                Err(why) => {
-                    prop_assert!(!why.is_empty());
+                Err(reason) => {
+                    prop_assert!(!reason.is_empty());
                     prop_assert_eq!(before.0, session.revision(), "{}", message);
                     if session.error().is_none() {
                         prop_assert_eq!(&before.1, session.world().state(), "{}", message);
                     }
                 }
             }
-            session.owe(Duration::from_millis(16));
-            let mut looks = 0;
-            session.advance(&mut || { looks += 1; looks < 3 });
-            let head: serde_json::Value = serde_json::from_str(&head::json(&session)).unwrap();
-            prop_assert_eq!(head["bodies"].as_array().unwrap().len(), session.world().body_count());
+            session.add_elapsed(Duration::from_millis(16));
+            let mut calls = 0;
+            session.advance(&mut || { calls += 1; calls < 3 });
+            let header: serde_json::Value = serde_json::from_str(&header::json(&session)).unwrap();
+            prop_assert_eq!(header["bodies"].as_array().unwrap().len(), session.world().body_count());
             let size = 80 + 88 * session.world().body_count();
             prop_assert_eq!(frame::record(&session).len(), size);
         }
-        // a reset always leads back to a motion
-        session.carry_out(&Command::Reset).unwrap();
+        // a reset always recovers
+        session.execute(&Command::Reset).unwrap();
         prop_assert_eq!((session.world().time(), session.error()), (0.0, None));
     }
 }

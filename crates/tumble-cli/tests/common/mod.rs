@@ -1,4 +1,4 @@
-//! What the command's tests share: calling it, reading what it wrote.
+//! Shared by the tests of the command: runs it in a temporary directory and reads its files.
 
 #![allow(dead_code)]
 
@@ -10,17 +10,17 @@ use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A body of twelve particles, quick to run.
+/// A body of twelve particles.
 pub const BODY: &str = "[[body]]\nshape = \"sphere\"\nsubdivisions = 0\n";
 
 /// A closed tetrahedron with an edge of about a metre.
 pub const TETRAHEDRON: &str =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
-/// A folder of its own for a test.
-pub struct Desk(pub TempDir);
+/// A temporary directory for one test.
+pub struct TestDir(pub TempDir);
 
-impl Desk {
+impl TestDir {
     pub fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
@@ -40,8 +40,8 @@ impl Desk {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
-    /// Calls the command in this folder.
-    pub fn tumble(&self, args: &[&str]) -> Said {
+    /// Runs the command in this directory.
+    pub fn tumble(&self, args: &[&str]) -> Outcome {
         tumble_in(self.0.path(), args)
     }
 
@@ -50,7 +50,7 @@ impl Desk {
         let mut all = vec!["run"];
         all.extend(args);
         all.extend(["--out", out]);
-        self.tumble(&all).ends_with(0);
+        self.tumble(&all).expect_status(0);
         self.summary(out)
     }
 
@@ -66,59 +66,59 @@ impl Desk {
         names
     }
 
-    /// Runs a scene that must be refused: status 2, nothing on stdout, nothing written.
-    pub fn refused(&self, scene: impl AsRef<[u8]>, args: &[&str]) -> String {
+    /// Runs a scene that must be rejected: status 2, nothing on stdout, nothing written. Returns stderr.
+    pub fn rejected(&self, scene: impl AsRef<[u8]>, args: &[&str]) -> String {
         self.write("s.toml", scene);
         let before = self.files("");
         let mut all = vec!["run", "s.toml"];
         all.extend(args);
-        let said = self.tumble(&all).ends_with(2);
-        assert_eq!(said.out, "");
-        assert_eq!(self.files(""), before, "a refused scene left something behind");
-        said.err
+        let outcome = self.tumble(&all).expect_status(2);
+        assert_eq!(outcome.stdout, "");
+        assert_eq!(self.files(""), before, "a rejected scene left files behind");
+        outcome.stderr
     }
 }
 
-/// How a call ended and what it said.
+/// Exit status and output of the command.
 #[derive(Debug)]
-pub struct Said {
+pub struct Outcome {
     pub status: Option<i32>,
-    pub out: String,
-    pub err: String,
+    pub stdout: String,
+    pub stderr: String,
 }
 
-impl Said {
-    pub fn of(output: Output) -> Self {
+impl Outcome {
+    pub fn new(output: Output) -> Self {
         Self {
             status: output.status.code(),
-            out: String::from_utf8(output.stdout).unwrap(),
-            err: String::from_utf8(output.stderr).unwrap(),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
         }
     }
 
-    pub fn ends_with(self, status: i32) -> Self {
+    pub fn expect_status(self, status: i32) -> Self {
         assert_eq!(self.status, Some(status), "{self:?}");
-        assert!(!self.err.contains("panicked"), "{self:?}");
+        assert!(!self.stderr.contains("panicked"), "{self:?}");
         self
     }
 }
 
-pub fn tumble_in(folder: &Path, args: &[&str]) -> Said {
+pub fn tumble_in(folder: &Path, args: &[&str]) -> Outcome {
     let mut command = Command::cargo_bin("tumble").unwrap();
-    // a test that hangs is a test that fails
+    // fails instead of hanging
     command.timeout(std::time::Duration::from_secs(60));
-    Said::of(command.current_dir(folder).args(args).output().unwrap())
+    Outcome::new(command.current_dir(folder).args(args).output().unwrap())
 }
 
-/// Asserts that a message has all of these parts.
+/// Asserts that a message contains all of these parts.
 #[track_caller]
-pub fn says(message: &str, parts: &[&str]) {
+pub fn assert_contains(message: &str, parts: &[&str]) {
     for part in parts {
         assert!(message.contains(part), "{part:?} is missing in:\n{message}");
     }
 }
 
-/// The rows of a CSV file, its header first.
+/// The rows of a CSV file, including its header.
 pub fn rows(text: &str) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }

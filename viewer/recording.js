@@ -1,78 +1,78 @@
-// The data of a run: the head (JSON) and the frames (binary records).
+// The data of a run: header (JSON), frames (binary records), and the state at a time between two frames.
 
 import { slerp } from './math.js';
 
-const LEDGER_SIZE = 10; // doubles: time, step, eight columns of the ledger
-export const BODY_SIZE = 22; // floats a body
+const LEDGER_SIZE = 10; // doubles per frame: time, step, eight columns of the energy ledger
+export const BODY_SIZE = 22; // floats per body
 
-// where each quantity of a body begins in its floats
-export const AT = { position: 0, orientation: 3, velocity: 7, spin: 10, momentum: 13, force: 16, torque: 19 };
+// offset of each quantity in the floats of a body
+export const OFFSET = { position: 0, orientation: 3, velocity: 7, angularVelocity: 10, angularMomentum: 13, force: 16, torque: 19 };
 
-export function bytesOfBase64(text) {
+export function decodeBase64(text) {
   if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
-  // in parts: a string of all bytes at once may be too long
+  // in blocks, since a string of all bytes could exceed the maximum string length
   const clean = text.trim();
   const bytes = new Uint8Array(Math.floor((clean.length * 3) / 4));
-  let at = 0;
-  for (let from = 0; from < clean.length; from += 1 << 16) {
-    const part = atob(clean.slice(from, from + (1 << 16)));
-    for (let i = 0; i < part.length; i++) bytes[at++] = part.charCodeAt(i);
+  let offset = 0;
+  for (let start = 0; start < clean.length; start += 1 << 16) {
+    const block = atob(clean.slice(start, start + (1 << 16)));
+    for (let i = 0; i < block.length; i++) bytes[offset++] = block.charCodeAt(i);
   }
-  return bytes.subarray(0, at);
+  return bytes.subarray(0, offset);
 }
 
-const floats = (text) => new Float32Array(bytesOfBase64(text).slice().buffer);
-const indices = (text) => new Uint32Array(bytesOfBase64(text).slice().buffer);
+const floats = (text) => new Float32Array(decodeBase64(text).slice().buffer);
+const indices = (text) => new Uint32Array(decodeBase64(text).slice().buffer);
 
-// the head with its shapes decoded
-export function decodeHead(head) {
-  const shapes = head.shapes.map((shape) => {
+// the header with decoded shapes
+export function decodeHeader(header) {
+  const shapes = header.shapes.map((shape) => {
     const vertices = floats(shape.vertices);
     const particles = shape.particles === null ? vertices : floats(shape.particles);
     return { ...shape, vertices, triangles: indices(shape.triangles), particles };
   });
-  return { ...head, shapes, boxPlanes: head.box ? boxPlanes(head) : [] };
+  return { ...header, shapes, boxPlanes: header.box ? boxPlanes(header) : [] };
 }
 
-// which walls are faces of the box: they come first, in the order of the faces that are there
-function boxPlanes(head) {
-  return head.walls.slice(0, 6 - head.box.open.length);
+// the walls that are faces of the box: they come first
+function boxPlanes(header) {
+  return header.walls.slice(0, 6 - header.box.open.length);
 }
 
-// one record as views into its bytes
+// a frame as typed-array views into the buffer
 export function decodeFrame(buffer, offset, bodyCount) {
-  const head = new Float64Array(buffer, offset, LEDGER_SIZE);
+  const numbers = new Float64Array(buffer, offset, LEDGER_SIZE);
   return {
-    time: head[0],
-    step: head[1],
-    ledger: head.subarray(2),
+    time: numbers[0],
+    step: numbers[1],
+    ledger: numbers.subarray(2),
     bodies: new Float32Array(buffer, offset + 8 * LEDGER_SIZE, BODY_SIZE * bodyCount),
   };
 }
 
 export const frameSize = (bodyCount) => 8 * LEDGER_SIZE + 4 * BODY_SIZE * bodyCount;
 
-// the frames of a run, or what a live one has sent so far
-export class Film {
+// The frames of a finished run, or those received from a live run so far.
+export class Recording {
   constructor(bodyCount) {
     this.bodyCount = bodyCount;
     this.frames = [];
-    // where it began, though a live film may have dropped it since
+    // the first frame, which is kept when it is dropped from `frames`
     this.first = null;
-    // a live run goes on for ever: keep what fits into some tens of megabytes
-    this.most = Math.max(64, Math.min(20000, Math.floor(4e7 / frameSize(bodyCount))));
+    // a live run has no end: keep about 40 MB
+    this.maxFrames = Math.max(64, Math.min(20000, Math.floor(4e7 / frameSize(bodyCount))));
     this.dropped = 0;
   }
 
-  static ofBytes(bytes, bodyCount) {
-    const film = new Film(bodyCount);
+  static fromBytes(bytes, bodyCount) {
+    const recording = new Recording(bodyCount);
     const size = frameSize(bodyCount);
     const buffer = bytes.slice().buffer;
     for (let offset = 0; offset + size <= buffer.byteLength; offset += size) {
-      film.frames.push(decodeFrame(buffer, offset, bodyCount));
+      recording.frames.push(decodeFrame(buffer, offset, bodyCount));
     }
-    film.first = film.frames[0] ?? null;
-    return film;
+    recording.first = recording.frames[0] ?? null;
+    return recording;
   }
 
   get length() {
@@ -87,17 +87,17 @@ export class Film {
     return this.length ? this.frames[this.length - 1].time : 0;
   }
 
-  // one more live frame; false if it is none
+  // adds a frame of a live run; returns false if its size is wrong
   push(buffer) {
     if (buffer.byteLength !== frameSize(this.bodyCount)) return false;
     const frame = decodeFrame(buffer, 0, this.bodyCount);
     if (this.length && frame.time < this.end) this.clear();
-    // the same moment once more (a pause): the newer one counts
+    // a frame of the same time replaces the last one
     if (this.length && frame.time === this.end) this.frames.pop();
     if (!this.length) this.first = frame;
     this.frames.push(frame);
-    if (this.length > this.most) {
-      const count = this.most >> 2;
+    if (this.length > this.maxFrames) {
+      const count = this.maxFrames >> 2;
       this.frames.splice(0, count);
       this.dropped += count;
     }
@@ -109,7 +109,7 @@ export class Film {
     this.dropped = 0;
   }
 
-  // the last frame at or before a time
+  // index of the last frame at or before a time
   indexAt(time) {
     let low = 0;
     let high = this.length - 1;
@@ -122,8 +122,8 @@ export class Film {
   }
 }
 
-// The bodies at one time: places and turns between two frames, all else from the frame before.
-export class Moment {
+// The bodies at one time. Poses are interpolated between two frames; all else is from the earlier frame.
+export class Snapshot {
   constructor(bodyCount) {
     this.bodyCount = bodyCount;
     this.pose = new Float32Array(7 * bodyCount);
@@ -132,25 +132,25 @@ export class Moment {
     this.time = 0;
   }
 
-  set(film, time) {
-    if (!film.length) {
+  set(recording, time) {
+    if (!recording.length) {
       this.frame = null;
       return;
     }
-    const index = film.indexAt(time);
-    const a = film.frames[index];
-    const b = film.frames[Math.min(index + 1, film.length - 1)];
+    const index = recording.indexAt(time);
+    const a = recording.frames[index];
+    const b = recording.frames[Math.min(index + 1, recording.length - 1)];
     const span = b.time - a.time;
     const t = span > 0 ? Math.min(Math.max((time - a.time) / span, 0), 1) : 0;
     this.frame = a;
     this.index = index;
     this.time = time;
     for (let body = 0; body < this.bodyCount; body++) {
-      this.blend(body, a.bodies, b.bodies, t);
+      this.interpolate(body, a.bodies, b.bodies, t);
     }
   }
 
-  blend(body, a, b, t) {
+  interpolate(body, a, b, t) {
     const from = BODY_SIZE * body;
     const to = 7 * body;
     if (t < 1e-6) {
@@ -170,15 +170,15 @@ export class Moment {
     return Array.from(this.pose.subarray(7 * body + 3, 7 * body + 7));
   }
 
-  // a vector of the frame: AT.velocity, AT.force, …
-  vector(body, at) {
-    const from = BODY_SIZE * body + at;
+  // a vector of the earlier frame, such as OFFSET.velocity
+  vector(body, offset) {
+    const from = BODY_SIZE * body + offset;
     return Array.from(this.frame.bodies.subarray(from, from + 3));
   }
 
-  // orientation at the frame before
-  turnOf(body) {
-    const from = BODY_SIZE * body + AT.orientation;
+  // orientation at the earlier frame
+  frameOrientation(body) {
+    const from = BODY_SIZE * body + OFFSET.orientation;
     return Array.from(this.frame.bodies.subarray(from, from + 4));
   }
 }

@@ -1,13 +1,13 @@
-//! Two aligned columns for people.
+//! Numbers and columns as text.
 
-/// `  name   value`, names padded to one width.
-pub fn table(rows: &[(&str, String)]) -> String {
+/// Rows of name and value, with the names padded to one width.
+pub fn columns(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     rows.iter().map(|(name, value)| format!("  {name:width$}  {value}\n")).collect()
 }
 
-/// A number for people: four to six digits, an exponent only where it is needed.
-pub fn short(x: f64) -> String {
+/// A number with four to six significant digits, and with an exponent below 0.001 and from a million on.
+pub fn number(x: f64) -> String {
     let size = x.abs();
     if size == 0.0 {
         "0".to_owned()
@@ -24,7 +24,7 @@ pub fn short(x: f64) -> String {
     }
 }
 
-/// A count with thousands apart: 1,234,567.
+/// A count with a comma between groups of three digits, as in 1,234,567.
 pub fn count(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::new();
@@ -42,12 +42,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_read_well() {
-        assert_eq!(short(0.0), "0");
-        assert_eq!(short(42.0), "42");
-        assert_eq!(short(-0.001234567), "-0.0012346");
-        assert_eq!(short(123456.7), "123457");
-        assert_eq!(short(1e-9), "1.0000e-9");
+    fn numbers_are_short_and_counts_are_grouped() {
+        assert_eq!(number(0.0), "0");
+        assert_eq!(number(42.0), "42");
+        assert_eq!(number(-0.001234567), "-0.0012346");
+        assert_eq!(number(123456.7), "123457");
+        assert_eq!(number(1e-9), "1.0000e-9");
         assert_eq!(count(1234567), "1,234,567");
         assert_eq!(count(12), "12");
     }

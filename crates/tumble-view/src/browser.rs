@@ -1,10 +1,10 @@
-//! Opening the person's browser.
+//! Opens the user's web browser.
 
 use std::env;
 use std::process::{Command, Stdio};
 
-/// Whether a window opened here would be seen: there is a display, and it is not at the other end of
-/// an ssh connection.
+/// Whether a browser window opened here would be visible: the machine has a display and the user is not
+/// connected by SSH.
 pub fn has_display() -> bool {
     let is_set = |name| env::var_os(name).is_some_and(|value| !value.is_empty());
     if is_set("SSH_CONNECTION") || is_set("SSH_TTY") {
@@ -13,9 +13,10 @@ pub fn has_display() -> bool {
     cfg!(windows) || cfg!(target_os = "macos") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
 }
 
-/// Opens `address` in the browser, by the means of the system. Whether that worked is not waited for: the
-/// address is printed in any case.
-pub fn open_browser(address: &str) {
+/// Opens `url` in the default browser.
+///
+/// Failures are ignored: the caller prints the address in any case.
+pub fn open_browser(url: &str) {
     let mut command = if cfg!(windows) {
         let mut command = Command::new("rundll32");
         command.arg("url.dll,FileProtocolHandler");
@@ -25,9 +26,9 @@ pub fn open_browser(address: &str) {
     } else {
         Command::new("xdg-open")
     };
-    command.arg(address).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.arg(url).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     if let Ok(mut child) = command.spawn() {
-        // somebody has to take note of its end
+        // reap the child, so that it does not stay as a zombie process
         std::thread::spawn(move || child.wait());
     }
 }

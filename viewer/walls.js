@@ -1,12 +1,12 @@
-// Walls: the faces of the box, and planes that fade out with distance. They receive the shadows.
+// Draws the walls: the faces of the box, and planes that fade out with distance. Shadows fall on them.
 
 import { add, cross, dot, length, normalize, perpendicular, rotate, scale, sub } from './math.js';
-import { attribute, buffer, program, setView } from './gl.js';
+import { attribute, buffer, program, useProgram } from './gl.js';
 import { WALL_FRAGMENT, WALL_VERTEX } from './shaders.js';
 import { round125 } from './format.js';
 
-export class Room {
-  constructor(gl, head, scene) {
+export class Walls {
+  constructor(gl, header, bounds) {
     this.gl = gl;
     this.wall = program(gl, WALL_VERTEX, WALL_FRAGMENT);
     this.square = gl.createVertexArray();
@@ -14,18 +14,18 @@ export class Room {
     buffer(gl, new Float32Array([-1, -1, 1, -1, -1, 1, 1, 1]));
     attribute(gl, 0, 2, 8, 0);
     gl.bindVertexArray(null);
-    this.setExtent(head, scene);
+    this.setBounds(header, bounds);
   }
 
-  setExtent(head, scene) {
-    this.faces = [...boxFaces(head), ...planes(head, scene)];
+  setBounds(header, bounds) {
+    this.faces = [...boxFaces(header), ...planes(header, bounds)];
   }
 
-  // before the bodies; only walls that are seen from the free side
+  // to be called before the bodies are drawn; walls seen from behind are left out
   draw(view) {
     const { gl } = this;
     const { at } = this.wall;
-    setView(gl, this.wall, view);
+    useProgram(gl, this.wall, view);
     gl.bindVertexArray(this.square);
     gl.depthMask(false);
     for (const face of this.faces) {
@@ -49,8 +49,8 @@ export class Room {
   }
 }
 
-// the corners of the box's frame, as pairs of ends
-export function frameOf(box) {
+// the edges of the box, as pairs of points
+export function boxEdges(box) {
   const corner = (i) => rotate(box.orientation, [0, 1, 2].map((k) => ((i >> k) & 1 ? box.max[k] : box.min[k])));
   const ends = [];
   for (let i = 0; i < 8; i++) {
@@ -63,8 +63,8 @@ export function frameOf(box) {
 
 const FACES = ['-x', '+x', '-y', '+y', '-z', '+z'];
 
-function boxFaces(head) {
-  const { box } = head;
+function boxFaces(header) {
+  const { box } = header;
   if (!box) return [];
   const size = sub(box.max, box.min);
   const middle = scale(add(box.min, box.max), 0.5);
@@ -82,7 +82,7 @@ function boxFaces(head) {
         normal: rotate(box.orientation, axis(k, face % 2 ? -1 : 1)),
         across: rotate(box.orientation, axis(i, size[i] / 2)),
         along: rotate(box.orientation, axis(j, size[j] / 2)),
-        // grid lines at whole multiples of the grid in the box's own coordinates
+        // grid lines lie at multiples of the spacing in the coordinates of the box
         shift: [middle[i], middle[j]],
         grid,
         fade: 0,
@@ -91,21 +91,21 @@ function boxFaces(head) {
   });
 }
 
-// planes that are no face of the box, around what happens near them
-function planes(head, { centre, radius }) {
+// walls that are not faces of the box, drawn around the bounding sphere of the scene
+function planes(header, { centre, radius }) {
   const grid = round125(radius / 10);
-  return head.walls.slice(head.boxPlanes.length).map(({ normal, offset }) => {
+  return header.walls.slice(header.boxPlanes.length).map(({ normal, offset }) => {
     const n = normalize(normal);
     const middle = add(centre, scale(n, offset / (length(normal) || 1) - dot(n, centre)));
-    const level = cross(n, head.up);
-    const across = length(level) > 1e-6 ? normalize(level) : perpendicular(n);
+    const horizontal = cross(n, header.up);
+    const across = length(horizontal) > 1e-6 ? normalize(horizontal) : perpendicular(n);
     const along = cross(n, across);
-    const reach = 3.4 * radius;
+    const halfSize = 3.4 * radius;
     return {
       middle,
       normal: n,
-      across: scale(across, reach),
-      along: scale(along, reach),
+      across: scale(across, halfSize),
+      along: scale(along, halfSize),
       shift: [dot(middle, across), dot(middle, along)],
       grid,
       fade: 1,

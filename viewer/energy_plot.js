@@ -1,20 +1,22 @@
-// The ledger over time: where the energy is and where it went, one band on top of the other.
+// The energy ledger over time: stacked areas of stored and dissipated energy, and their sum.
 
 import { element } from './dom.js';
 import { quantity, round125 } from './format.js';
 import { LEDGER } from './palette.js';
 
+// indices into the ledger of a frame; the last two values are derived
 const GRAVITATIONAL = 1;
 const TOTAL = 6;
 const RESIDUAL = 7;
-const WORK = 8;
-const DRIVEN = 9;
+const MOUSE_WORK = 8;
+const PRESCRIBED_WORK = 9;
+// margins in CSS pixels
 const LEFT = 58;
 const RIGHT = 10;
 const TOP = 8;
 const BOTTOM = 18;
 
-export class Plot {
+export class EnergyPlot {
   constructor(parent, player) {
     this.player = player;
     this.canvas = element('canvas', { role: 'img' });
@@ -30,32 +32,32 @@ export class Plot {
 
   listen() {
     const { area } = this;
-    let held = false;
+    let isDown = false;
     const seek = (event) => {
       this.player.playing = false;
       const t = this.timeAt(event.offsetX ?? 0);
-      const { film } = this.player;
-      const i = film.indexAt(t);
-      const next = film.frames[Math.min(i + 1, film.length - 1)];
-      if (film.length) this.player.seek(next.time - t < t - film.frames[i].time ? next.time : film.frames[i].time);
+      const { recording } = this.player;
+      const i = recording.indexAt(t);
+      const next = recording.frames[Math.min(i + 1, recording.length - 1)];
+      if (recording.length) this.player.seek(next.time - t < t - recording.frames[i].time ? next.time : recording.frames[i].time);
     };
     area.addEventListener('pointerdown', (event) => {
-      held = true;
+      isDown = true;
       area.setPointerCapture(event.pointerId);
       seek(event);
     });
     area.addEventListener('pointermove', (event) => {
-      if (held) seek(event);
-      this.point(event.offsetX);
+      if (isDown) seek(event);
+      this.showTip(event.offsetX);
     });
-    area.addEventListener('pointerup', () => (held = false));
-    area.addEventListener('pointercancel', () => (held = false));
-    area.addEventListener('pointerleave', () => this.point(null));
+    area.addEventListener('pointerup', () => (isDown = false));
+    area.addEventListener('pointercancel', () => (isDown = false));
+    area.addEventListener('pointerleave', () => this.showTip(null));
   }
 
   span() {
-    const { film } = this.player;
-    return [film.start, film.end > film.start ? film.end : film.start + 1];
+    const { recording } = this.player;
+    return [recording.start, recording.end > recording.start ? recording.end : recording.start + 1];
   }
 
   timeAt(x) {
@@ -69,16 +71,16 @@ export class Plot {
     return LEFT + ((t - start) / (end - start)) * (this.width - LEFT - RIGHT);
   }
 
-  // draws anew if size, theme or film are others than last time; then the cursor
+  // redraws if size, theme or recording have changed, and moves the cursor
   update(themeName) {
-    const { film } = this.player;
+    const { recording } = this.player;
     const box = this.area.getBoundingClientRect();
-    if (box.width < 40 || !film.length) return;
+    if (box.width < 40 || !recording.length) return;
     this.width = box.width;
     this.height = box.height;
-    const key = `${box.width} ${box.height} ${themeName} ${film.length} ${film.end} ${film.dropped}`;
+    const key = `${box.width} ${box.height} ${themeName} ${recording.length} ${recording.end} ${recording.dropped}`;
     const now = performance.now();
-    // a live film grows with every frame: a few drawings a second will do
+    // a live recording changes with every frame: redraw a few times per second
     if (key !== this.key && (!this.player.live || now - (this.drawn ?? 0) > 150)) {
       this.key = key;
       this.drawn = now;
@@ -87,54 +89,53 @@ export class Plot {
     this.cursor.style.transform = `translateX(${this.xOf(this.player.time)}px)`;
   }
 
-  // the heights of all bands of one frame
+  // the values of all areas at one frame
   bands(frame) {
     return LEDGER.map((_, k) => frame.ledger[k] - (k === GRAVITATIONAL ? this.zero : 0));
   }
 
-  // Where the plot counts gravitational energy from: its lowest value in a run that is over; in a live one,
-  // whose lowest nobody knows yet, its value at the start, so that nothing moves while time goes on.
-  findZero() {
-    const { film, live } = this.player;
-    if (live) return film.first.ledger[GRAVITATIONAL];
-    return film.frames.reduce((low, f) => Math.min(low, f.ledger[GRAVITATIONAL]), Infinity);
+  // The zero of gravitational energy in the plot: its minimum in a finished run, its value at the start in a live
+  // run, where the minimum is not known yet.
+  gravitationalZero() {
+    const { recording, live } = this.player;
+    if (live) return recording.first.ledger[GRAVITATIONAL];
+    return recording.frames.reduce((low, f) => Math.min(low, f.ledger[GRAVITATIONAL]), Infinity);
   }
 
-  // What the hand has added since the start, by pulling and by changed numbers (J): the server leaves it out
-  // of the residual. Nothing, where it is no more than rounding.
-  work(frame) {
+  // Energy added since the start by the mouse spring and by changed parameters (J). It is not in the residual. Zero if
+  // it is within rounding.
+  mouseWork(frame) {
     const start = ({ ledger }) => ledger[TOTAL] - ledger[RESIDUAL];
-    const work = start(frame) - start(this.player.film.first);
+    const work = start(frame) - start(this.player.recording.first);
     const size = frame.ledger.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
     return Math.abs(work) > 1e-9 * size ? work : 0;
   }
 
-  // What driven bodies have put in (J): the total is the sum of the parts less this. Nothing, where it is no more
-  // than rounding.
-  driven(frame) {
+  // Work done by prescribed bodies (J): the sum of the parts minus the total. Zero if it is within rounding.
+  prescribedWork(frame) {
     const work = LEDGER.reduce((sum, _, k) => sum + frame.ledger[k], 0) - frame.ledger[TOTAL];
     const size = frame.ledger.reduce((most, x) => Math.max(most, Math.abs(x)), 0);
     return Math.abs(work) > 1e-9 * size ? work : 0;
   }
 
   paint() {
-    const { film } = this.player;
+    const { recording } = this.player;
     const ratio = window.devicePixelRatio || 1;
     this.canvas.width = Math.round(this.width * ratio);
     this.canvas.height = Math.round(this.height * ratio);
     const pen = this.canvas.getContext('2d');
     pen.scale(ratio, ratio);
-    this.zero = this.findZero();
-    // as many frames as there are half pixels
-    const step = Math.max(1, Math.floor(film.length / (2 * this.width)));
-    const frames = film.frames.filter((_, i) => i % step === 0 || i === film.length - 1);
+    this.zero = this.gravitationalZero();
+    // at most two frames per pixel
+    const step = Math.max(1, Math.floor(recording.length / (2 * this.width)));
+    const frames = recording.frames.filter((_, i) => i % step === 0 || i === recording.length - 1);
     const rows = frames.map((frame) => this.bands(frame));
     const totals = frames.map((frame) => frame.ledger[TOTAL] - this.zero);
     const used = LEDGER.map((_, k) => frames.some((frame) => Math.abs(frame.ledger[k]) > 0));
     const sum = (row, sign) => row.reduce((all, x) => all + Math.max(sign * x, 0), 0);
     let top = Math.max(0, ...rows.map((row) => sum(row, 1)), ...totals);
     const low = Math.min(0, ...rows.map((row) => -sum(row, -1)), ...totals);
-    // right after a start there may be nothing to tell yet: an axis of the size of what there is
+    // at the start all values may be equal: scale the axis by the total energy
     const size = frames.reduce((most, { ledger }) => Math.max(most, Math.abs(ledger[TOTAL])), 0);
     if (!(top - low > 1e-9 * size)) top = size || 1;
     this.scaleY = (this.height - TOP - BOTTOM) / (1.06 * (top - low));
@@ -143,11 +144,11 @@ export class Plot {
     this.axes(pen, [1.06 * low, 1.06 * top], y, style);
     this.fill(pen, frames, rows, used, y);
     this.line(pen, frames, totals, y, style.getPropertyValue('--ink'));
-    if (used[GRAVITATIONAL]) this.sayZero(pen, style);
-    this.writeLegend(used, this.work(film.frames.at(-1)) !== 0);
+    if (used[GRAVITATIONAL]) this.labelZero(pen, style);
+    this.writeLegend(used, this.mouseWork(recording.frames.at(-1)) !== 0);
   }
 
-  // bands stand on one another; what is below zero hangs below the axis
+  // stacks positive values above the axis and negative values below it
   fill(pen, frames, rows, used, y) {
     for (const sign of [1, -1]) {
       const base = new Float64Array(frames.length);
@@ -166,11 +167,11 @@ export class Plot {
     }
   }
 
-  // that the plot, unlike the numbers, counts gravitational energy from elsewhere
-  sayZero(pen, style) {
-    const { live, film } = this.player;
-    const where = live ? `its value at ${Number(film.first.time.toPrecision(4))} s` : 'its lowest value';
-    const text = `plot: gravitational from ${where}, ${quantity(this.zero, 'J', 4)}`;
+  // states the zero of gravitational energy, which differs from that of the numbers
+  labelZero(pen, style) {
+    const { live, recording } = this.player;
+    const where = live ? `value at ${Number(recording.first.time.toPrecision(4))} s` : 'minimum';
+    const text = `gravitational zero in the plot: ${where}, ${quantity(this.zero, 'J', 4)}`;
     pen.font = `10.5px ${style.fontFamily}`;
     pen.textAlign = 'right';
     pen.textBaseline = 'top';
@@ -184,7 +185,7 @@ export class Plot {
     pen.fillText(text, this.width - RIGHT - 3, TOP - 4);
   }
 
-  // the sum, and dashed where it began
+  // the sum, and a dotted line at its value at the start
   line(pen, frames, totals, y, ink) {
     pen.strokeStyle = ink;
     pen.lineWidth = 1.6;
@@ -230,9 +231,9 @@ export class Plot {
     }
   }
 
-  writeLegend(used, hasWork) {
-    const isDriven = this.player.film.frames.some((frame) => this.driven(frame) !== 0);
-    const shown = [...used, hasWork, isDriven].map(Number).join('');
+  writeLegend(used, hasMouseWork) {
+    const hasPrescribedWork = this.player.recording.frames.some((frame) => this.prescribedWork(frame) !== 0);
+    const shown = [...used, hasMouseWork, hasPrescribedWork].map(Number).join('');
     if (shown === this.legendKey) return;
     this.legendKey = shown;
     this.values = new Map();
@@ -242,31 +243,31 @@ export class Plot {
       return element('div', { className: 'item', title: note }, element('i', { className: key === TOTAL ? 'swatch line' : 'swatch', css: { '--c': css } }), element('span', {}, label), value);
     };
     const parts = LEDGER.map((part, k) => (used[k] ? item(k, part.label, part.colour, part.note) : null)).filter(Boolean);
-    const rest = [item(RESIDUAL, 'Residual (integrator’s error)', 'transparent', 'what the total has moved by since the start, without the work of the hand')];
-    if (isDriven) rest.push(item(DRIVEN, 'Work put in', 'transparent', 'what bodies whose motion is prescribed have added since the start: the total is the parts less this'));
-    if (hasWork) rest.push(item(WORK, 'Work of the hand', 'transparent', 'what pulling and changed numbers have added since the start'));
+    const rest = [item(RESIDUAL, 'Residual (integrator error)', 'transparent', 'change of the total since the start, without mouse and edits')];
+    if (hasPrescribedWork) rest.push(item(PRESCRIBED_WORK, 'Prescribed motion', 'transparent', 'work done by prescribed bodies since the start; the total is the sum of the parts minus this'));
+    if (hasMouseWork) rest.push(item(MOUSE_WORK, 'Mouse and edits', 'transparent', 'energy added by dragging and by changed parameters since the start'));
     this.legend.replaceChildren(element('h2', {}, 'Energy'), ...parts, item(TOTAL, 'Total', 'var(--ink)'), ...rest);
-    const last = this.player.film.frames.at(-1);
+    const last = this.player.recording.frames.at(-1);
     const drift = quantity(last.ledger[RESIDUAL], 'J', 2);
-    this.canvas.setAttribute('aria-label', `Energy over time, from ${this.player.film.start} to ${last.time} seconds. The total has moved by ${drift} since the start.`);
+    this.canvas.setAttribute('aria-label', `Energy over time, from ${this.player.recording.start} to ${last.time} seconds. The total has changed by ${drift} since the start.`);
   }
 
-  // the values at the moment that is shown, as in energy.csv
+  // writes the values of a frame into the legend, as in energy.csv
   tick(frame) {
     if (!this.values || !frame) return;
     for (const [key, node] of this.values) {
-      node.textContent = quantity(key === WORK ? this.work(frame) : key === DRIVEN ? this.driven(frame) : frame.ledger[key], 'J', 4);
+      node.textContent = quantity(key === MOUSE_WORK ? this.mouseWork(frame) : key === PRESCRIBED_WORK ? this.prescribedWork(frame) : frame.ledger[key], 'J', 4);
     }
   }
 
-  // the values under the pointer
-  point(x) {
-    const { film } = this.player;
-    const off = x === null || !film.length || !this.width;
+  // shows the values at the pointer; null hides them
+  showTip(x) {
+    const { recording } = this.player;
+    const off = x === null || !recording.length || !this.width;
     this.hover.hidden = off;
     this.tip.hidden = off;
     if (off) return;
-    const frame = film.frames[film.indexAt(this.timeAt(x))];
+    const frame = recording.frames[recording.indexAt(this.timeAt(x))];
     const at = this.xOf(frame.time);
     this.hover.style.transform = `translateX(${at}px)`;
     const rows = LEDGER.map((part, k) => [part, frame.ledger[k]]).filter((_, k) => this.values?.has(k));
@@ -275,7 +276,7 @@ export class Plot {
       ...rows.map(([part, value]) => element('div', {}, element('i', { className: 'swatch', css: { '--c': part.colour } }), `${part.label} ${quantity(value, 'J', 4)}`)),
       element('div', {}, `Total ${quantity(frame.ledger[TOTAL], 'J', 5)}`),
       element('div', { className: 'muted' }, `Residual ${quantity(frame.ledger[RESIDUAL], 'J', 2)}`),
-      ...(this.work(frame) ? [element('div', { className: 'muted' }, `Work of the hand ${quantity(this.work(frame), 'J', 4)}`)] : []),
+      ...(this.mouseWork(frame) ? [element('div', { className: 'muted' }, `Mouse and edits ${quantity(this.mouseWork(frame), 'J', 4)}`)] : []),
     );
     const right = at > this.width / 2;
     this.tip.style.left = right ? '' : `${at + 10}px`;

@@ -1,26 +1,26 @@
-//! What a scene may not say of surfaces and motions, and what it may.
+//! Invalid surfaces and motions of bodies are rejected with a message.
 
 #![allow(clippy::unwrap_used)]
 
 mod common;
 
-use common::{BODY, Desk, says};
+use common::{BODY, TestDir, assert_contains};
 
 const BARE: &str = "[[body]]\nparticles = [[0, 0, 0], [0.1, 0, 0]]\n";
 
-/// Each of these lines, put into the only body.
-fn in_a_body(cases: &[(&str, &[&str])]) {
-    let desk = Desk::new();
+/// Checks the message for each of these lines in the only body of a scene.
+fn check_body_lines(cases: &[(&str, &[&str])]) {
+    let dir = TestDir::new();
     for (line, parts) in cases {
-        let message = desk.refused(format!("{BODY}{line}\n"), &[]);
-        says(&message, parts);
+        let message = dir.rejected(format!("{BODY}{line}\n"), &[]);
+        assert_contains(&message, parts);
         assert_eq!(message.matches("error:").count(), 1, "{message}");
     }
 }
 
 #[test]
-fn surfaces() {
-    in_a_body(&[
+fn invalid_surfaces_are_rejected() {
+    check_body_lines(&[
         (
             "surface = \"spheers\"",
             &["`body.0.surface` must be one of", "mean \"spheres\"?", ":4:11"],
@@ -53,17 +53,17 @@ fn surfaces() {
         ("particle_radius = -1", &["`body.0.particle_radius` must be above 0, but is -1"]),
         ("particel_radius = 1", &["`body.0.particel_radius`", "mean `particle_radius`?"]),
     ]);
-    let message = Desk::new().refused(format!("{BARE}surface = \"mesh\"\n"), &[]);
-    says(
+    let message = TestDir::new().rejected(format!("{BARE}surface = \"mesh\"\n"), &[]);
+    assert_contains(
         &message,
         &["`body.0.surface` cannot be \"mesh\"", "s.toml:3:11", "give `particle_radius`"],
     );
 }
 
 #[test]
-fn motions() {
+fn invalid_motions_are_rejected() {
     let swing = "{ amplitude = [0, 0.1, 0], frequency = 5 }";
-    in_a_body(&[
+    check_body_lines(&[
         ("motion = \"fix\"", &["`body.0.motion` must be one of", "mean \"fixed\"?", ":4:10"]),
         (
             "motion = \"fixed\"\ninitial_velocity = [1, 0, 0]",
@@ -100,15 +100,18 @@ fn motions() {
 }
 
 #[test]
-fn bodies_that_pass_through_each_other_are_told_of() {
-    let desk = Desk::new();
+fn a_note_says_that_bodies_without_surfaces_do_not_touch() {
+    let dir = TestDir::new();
     let note = "the bodies do not touch each other: none has a `surface`";
     let out = |scene: String| {
-        desk.write("s.toml", format!("duration = 0.01\n{scene}"));
-        desk.tumble(&["run", "s.toml"]).ends_with(0).out
+        dir.write("s.toml", format!("duration = 0.01\n{scene}"));
+        dir.tumble(&["run", "s.toml"]).expect_status(0).stdout
     };
-    says(&out(format!("{BODY}{BODY}")), &[note]);
-    says(&out(format!("{BODY}copies = {{count = [2, 1, 1], spacing = [1, 1, 1]}}\n")), &[note]);
+    assert_contains(&out(format!("{BODY}{BODY}")), &[note]);
+    assert_contains(
+        &out(format!("{BODY}copies = {{count = [2, 1, 1], spacing = [1, 1, 1]}}\n")),
+        &[note],
+    );
     assert!(!out(BODY.to_owned()).contains(note));
     let apart = format!("{BODY}{BODY}position = [3, 0, 0]\nparticle_radius = 0.01\n");
     assert!(!out(apart).contains(note));

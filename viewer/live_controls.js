@@ -1,12 +1,12 @@
-// What can be changed in a live run: the link, sliders for its numbers, dragging, saving.
+// The controls of a live run: connection state, a slider for each parameter, drag mode, saving.
 
 import { button, element } from './dom.js';
 import { number } from './format.js';
 
 const STEPS = 1000;
 
-// Where a key belongs and what it is called there: of `body.0.initial_velocity.0` the body and `velocity x`.
-export function naming(key, bodyNames) {
+// The group and label of a scene key: `body.0.initial_velocity.0` is `velocity x` in the group of that body.
+export function label(key, bodyNames) {
   const parts = key.split('.');
   const axis = 'xyz'[parts.at(-1)];
   const last = axis ? `${parts.at(-2)} ${axis}` : parts.at(-1);
@@ -14,34 +14,34 @@ export function naming(key, bodyNames) {
   if (parts[0] === 'box') return { group: 'box', name };
   if ((parts[0] !== 'body' && parts[0] !== 'wall') || parts.length < 3) return { group: '', name };
   const index = Number(parts[1]);
-  const own = parts[0] === 'body' ? bodyNames[index] : undefined;
-  return { group: `${parts[0]} ${own ?? index + 1}`, name };
+  const bodyName = parts[0] === 'body' ? bodyNames[index] : undefined;
+  return { group: `${parts[0]} ${bodyName ?? index + 1}`, name };
 }
 
-export class Controls {
-  // `actions`: set(key, value), save(), grab(on)
+export class LiveControls {
+  // `actions`: set(key, value), save(), toggleDragMode()
   constructor(parent, actions) {
     this.actions = actions;
     this.sliders = new Map();
-    this.state = element('span', { className: 'state', id: 'link', role: 'status' });
+    this.state = element('span', { className: 'state', id: 'connection', role: 'status' });
     this.rate = element('span', { className: 'muted' });
     this.error = element('p', { className: 'error', role: 'alert', hidden: true });
     this.list = element('div', { className: 'parameters' });
-    this.grabButton = button('Drag bodies with the mouse (G, or hold Shift)', 'Drag bodies', () => actions.grab(), 'Drag bodies');
-    this.grabButton.setAttribute('aria-pressed', 'false');
-    this.grabButton.id = 'grab';
-    const save = button('Save the scene as it is now (S)', 'Save scene', () => actions.save(), 'Save scene');
+    this.dragButton = button('Drag bodies with the mouse (G, or hold Shift)', 'Drag bodies', () => actions.toggleDragMode(), 'Drag bodies');
+    this.dragButton.setAttribute('aria-pressed', 'false');
+    this.dragButton.id = 'drag';
+    const save = button('Save the present state as a scene file (S)', 'Save scene', () => actions.save(), 'Save scene');
     save.id = 'save';
     parent.replaceChildren(
       element('div', { className: 'top' }, this.state, this.rate),
       this.error,
       this.list,
-      element('div', { className: 'row-of-buttons' }, this.grabButton, save),
+      element('div', { className: 'row-of-buttons' }, this.dragButton, save),
     );
   }
 
-  link(state, seconds) {
-    const text = { connecting: 'Connecting …', open: 'Connected', closed: `No connection; trying again in ${number(seconds, 2)} s` }[state];
+  connection(state, seconds) {
+    const text = { connecting: 'Connecting …', open: 'Connected', closed: `No connection; retrying in ${number(seconds, 2)} s` }[state];
     this.state.textContent = text;
     this.state.dataset.state = state;
   }
@@ -53,49 +53,49 @@ export class Controls {
     for (const [key, { row, applies }] of this.sliders) {
       const waits = (pending ?? []).includes(key);
       row.dataset.pending = String(waits);
-      applies.textContent = waits ? 'waits for the next start' : applies.dataset.text;
+      applies.textContent = waits ? 'waiting for reset' : applies.dataset.text;
     }
   }
 
-  // sliders for these numbers; those that are there already are only set
+  // builds the sliders, or updates their values if the list of keys has not changed
   parameters(list, bodies) {
     const keys = list.map(({ key }) => key).join('\n');
     if (keys !== this.keys) {
       this.keys = keys;
       this.sliders.clear();
-      // copies make more bodies than there are tables of them: then a number says which table
+      // with copies there are more bodies than [[body]] tables, and groups are numbered by table
       const tables = new Set(list.map(({ key }) => key.match(/^body\.(\d+)\./)?.[1]).filter(Boolean));
       this.list.replaceChildren(...this.groups(list, tables.size === bodies.length ? bodies.map(({ name }) => name) : []));
     }
     for (const parameter of list) {
       const slider = this.sliders.get(parameter.key);
-      if (slider && (this.settling || document.activeElement !== slider.input)) slider.show(parameter.value);
+      if (slider && (this.restoring || document.activeElement !== slider.input)) slider.show(parameter.value);
     }
   }
 
-  // back to the numbers of the server, which has refused another
-  settle(list, bodies) {
-    this.settling = true;
+  // sets all sliders to the values of the server after it has refused a change
+  restore(list, bodies) {
+    this.restoring = true;
     this.parameters(list, bodies);
   }
 
-  // what belongs to a body, a wall or the box is folded away under its name
+  // the sliders of each body, wall and the box are in a collapsed section
   groups(list, bodyNames) {
     const nodes = [];
-    const folds = new Map();
+    const sections = new Map();
     for (const parameter of list) {
-      const { group, name } = naming(parameter.key, bodyNames);
+      const { group, name } = label(parameter.key, bodyNames);
       const row = this.slider(parameter, group, name);
       if (!group) {
         nodes.push(row);
         continue;
       }
-      if (!folds.has(group)) {
-        const fold = element('details', { className: 'group' }, element('summary', {}, group));
-        folds.set(group, fold);
-        nodes.push(fold);
+      if (!sections.has(group)) {
+        const section = element('details', { className: 'group' }, element('summary', {}, group));
+        sections.set(group, section);
+        nodes.push(section);
       }
-      folds.get(group).append(row);
+      sections.get(group).append(row);
     }
     return nodes;
   }
@@ -103,13 +103,13 @@ export class Controls {
   slider(parameter, group, name) {
     const { key, unit, applies: when, log, min, max } = parameter;
     const useLog = log && min > 0;
-    const toPart = (v) => (useLog ? Math.log(v / min) / Math.log(max / min) : (v - min) / (max - min));
+    const toFraction = (v) => (useLog ? Math.log(v / min) / Math.log(max / min) : (v - min) / (max - min));
     const toValue = (p) => (useLog ? min * (max / min) ** p : min + p * (max - min));
-    const whole = `${group} ${name}`.trim();
-    const input = element('input', { type: 'range', min: '0', max: String(STEPS), step: '1', 'aria-label': unit ? `${whole} in ${unit}` : whole });
+    const fullName = `${group} ${name}`.trim();
+    const input = element('input', { type: 'range', min: '0', max: String(STEPS), step: '1', 'aria-label': unit ? `${fullName} in ${unit}` : fullName });
     const value = element('output', {});
     const show = (v) => {
-      input.value = String(STEPS * Math.min(Math.max(toPart(v), 0), 1));
+      input.value = String(STEPS * Math.min(Math.max(toFraction(v), 0), 1));
       write(v);
     };
     const write = (v) => {
@@ -119,11 +119,11 @@ export class Controls {
     input.addEventListener('input', () => {
       const v = Number(toValue(Number(input.value) / STEPS).toPrecision(3));
       write(v);
-      this.settling = false;
+      this.restoring = false;
       this.actions.set(key, v);
     });
     const applies = element('small', { className: 'applies' });
-    applies.dataset.text = when === 'at reset' ? 'from the next start' : '';
+    applies.dataset.text = when === 'at reset' ? 'applies at reset' : '';
     applies.textContent = applies.dataset.text;
     const row = element('label', { className: 'slider parameter', title: key }, element('span', {}, name, ' ', applies), value, input);
     this.sliders.set(key, { row, input, show, applies });

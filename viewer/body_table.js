@@ -1,40 +1,41 @@
-// The table of bodies: only the rows in sight exist, so a thousand bodies cost no more than ten.
+// The table of bodies. Only the visible rows exist as elements.
 
-import { AT } from './data.js';
+import { OFFSET } from './recording.js';
 import { element } from './dom.js';
 import { number } from './format.js';
 import { dot, length } from './math.js';
 
-const ROW = 30;
+const ROW = 30; // row height in CSS pixels
 
-export function kinetic(head, moment, body) {
-  const v = moment.vector(body, AT.velocity);
-  return 0.5 * head.bodies[body].mass * dot(v, v) + 0.5 * dot(moment.vector(body, AT.spin), moment.vector(body, AT.momentum));
+// kinetic energy of a body (J)
+export function kinetic(header, snapshot, body) {
+  const v = snapshot.vector(body, OFFSET.velocity);
+  return 0.5 * header.bodies[body].mass * dot(v, v) + 0.5 * dot(snapshot.vector(body, OFFSET.angularVelocity), snapshot.vector(body, OFFSET.angularMomentum));
 }
 
-export class Table {
-  constructor(head, colours, select) {
-    this.head = head;
+export class BodyTable {
+  constructor(header, colours, select) {
+    this.header = header;
     this.colours = colours;
     this.select = select;
     this.selected = null;
-    this.pool = new Map();
-    this.rows = element('div', { className: 'rows', css: { height: `${ROW * head.bodies.length}px` } });
+    this.visibleRows = new Map();
+    this.rows = element('div', { className: 'rows', css: { height: `${ROW * header.bodies.length}px` } });
     this.scroll = element('div', {
-      className: 'scroll', tabIndex: 0, role: 'grid', 'aria-label': 'Bodies: up and down select, Escape selects none',
-      'aria-rowcount': String(head.bodies.length + 1),
-      on: { scroll: () => this.update(this.moment), keydown: (event) => this.key(event) },
-    }, this.header(), this.rows);
-    this.scroll.style.setProperty('--rows', String(Math.min(head.bodies.length, 8)));
+      className: 'scroll', tabIndex: 0, role: 'grid', 'aria-label': 'Bodies. Up and down arrow keys select a body, Escape clears the selection.',
+      'aria-rowcount': String(header.bodies.length + 1),
+      on: { scroll: () => this.update(this.snapshot), keydown: (event) => this.key(event) },
+    }, this.columnHeaders(), this.rows);
+    this.scroll.style.setProperty('--rows', String(Math.min(header.bodies.length, 8)));
   }
 
-  header() {
+  columnHeaders() {
     const cell = (text, unit) => element('span', { role: 'columnheader' }, text, element('small', {}, unit));
     return element('div', { className: 'row head', role: 'row' }, cell('Body', ''), cell('x, y, z', 'm'), cell('Speed', 'm/s'), cell('|ω|', 'rad/s'), cell('Kinetic', 'J'));
   }
 
   key(event) {
-    const { length: count } = this.head.bodies;
+    const { length: count } = this.header.bodies;
     const page = Math.max(Math.floor(this.scroll.clientHeight / ROW) - 2, 1);
     const by = { ArrowDown: 1, ArrowUp: -1, PageDown: page, PageUp: -page }[event.key];
     if (by === undefined && event.key !== 'Home' && event.key !== 'End') return;
@@ -56,13 +57,13 @@ export class Table {
     } else {
       this.scroll.removeAttribute('aria-activedescendant');
     }
-    this.update(this.moment);
+    this.update(this.snapshot);
   }
 
   row(body) {
     const cells = [0, 1, 2, 3].map(() => element('span', { role: 'gridcell' }));
     const [r, g, b] = this.colours[body].map((c) => Math.round(255 * c));
-    const name = element('span', { role: 'rowheader', title: this.head.bodies[body].name }, element('i', { className: 'swatch', css: { '--c': `rgb(${r} ${g} ${b})` } }), this.head.bodies[body].name);
+    const name = element('span', { role: 'rowheader', title: this.header.bodies[body].name }, element('i', { className: 'swatch', css: { '--c': `rgb(${r} ${g} ${b})` } }), this.header.bodies[body].name);
     const node = element('div', {
       className: 'row', role: 'row', id: `body-${body}`, 'aria-rowindex': String(body + 2), css: { top: `${ROW * body}px` },
       on: { click: () => this.select(this.selected === body ? null : body) },
@@ -70,40 +71,40 @@ export class Table {
     return { node, cells };
   }
 
-  update(moment) {
-    this.moment = moment;
+  update(snapshot) {
+    this.snapshot = snapshot;
     const { scrollTop, clientHeight } = this.scroll;
-    if (!moment?.frame || !clientHeight) return;
+    if (!snapshot?.frame || !clientHeight) return;
     const first = Math.max(Math.floor(scrollTop / ROW) - 1, 0);
-    const last = Math.min(first + Math.ceil(clientHeight / ROW) + 2, this.head.bodies.length);
-    for (const [body, { node }] of this.pool) {
+    const last = Math.min(first + Math.ceil(clientHeight / ROW) + 2, this.header.bodies.length);
+    for (const [body, { node }] of this.visibleRows) {
       if (body >= first && body < last) continue;
       node.remove();
-      this.pool.delete(body);
+      this.visibleRows.delete(body);
     }
     for (let body = first; body < last; body++) {
-      let row = this.pool.get(body);
+      let row = this.visibleRows.get(body);
       if (!row) {
         row = this.row(body);
-        this.pool.set(body, row);
+        this.visibleRows.set(body, row);
         this.rows.append(row.node);
       }
-      this.write(row, body, moment);
+      this.write(row, body, snapshot);
     }
   }
 
-  write({ node, cells }, body, moment) {
-    const p = moment.position(body);
+  write({ node, cells }, body, snapshot) {
+    const p = snapshot.position(body);
     const texts = [
       p.map((x) => (Math.abs(x) < 1000 ? x.toFixed(2).replace('-', '−') : number(x, 2))).join(' '),
-      number(length(moment.vector(body, AT.velocity))),
-      number(length(moment.vector(body, AT.spin))),
-      number(kinetic(this.head, moment, body)),
+      number(length(snapshot.vector(body, OFFSET.velocity))),
+      number(length(snapshot.vector(body, OFFSET.angularVelocity))),
+      number(kinetic(this.header, snapshot, body)),
     ];
     texts.forEach((text, i) => {
       if (cells[i].textContent !== text) cells[i].textContent = text;
     });
-    const chosen = String(body === this.selected);
-    if (node.getAttribute('aria-selected') !== chosen) node.setAttribute('aria-selected', chosen);
+    const isSelected = String(body === this.selected);
+    if (node.getAttribute('aria-selected') !== isSelected) node.setAttribute('aria-selected', isSelected);
   }
 }

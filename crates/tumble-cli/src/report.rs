@@ -1,0 +1,96 @@
+//! The report on a finished run.
+
+use tumble_io::run::{Finished, RunFolder, Summary};
+
+use crate::format::{columns, count, number};
+
+/// The summary of a run as two columns.
+pub fn report(finished: &Finished, folder: &RunFolder) -> String {
+    let (s, e) = (&finished.summary, &finished.energy);
+    let dissipated = e.drag + e.dashpot + e.slip;
+    // gravitational energy has an arbitrary zero, so that the total is no scale for the residual
+    let scale = e.kinetic + e.elastic + dissipated;
+    let relative = s.energy_residual / scale;
+    let share = if relative.is_finite() {
+        format!(" ({relative:+.2e} of kinetic + elastic + dissipated energy)")
+    } else {
+        String::new()
+    };
+    let mut rows = vec![
+        ("scene", bodies_of(s)),
+        ("integrator", integrator(s)),
+        ("steps", format!("{} in {} s", steps(finished), number(s.wall_seconds))),
+        ("speed", format!("{} steps/s", count(s.steps_per_second as u64))),
+        (
+            "time",
+            format!("{} s{}", number(s.time), if s.interrupted { " (stopped early)" } else { "" }),
+        ),
+        ("energy", format!("{} J at the start", number(s.energy_start))),
+        (
+            "",
+            format!(
+                "{} J kinetic, {} J gravitational, {} J elastic at the end",
+                number(e.kinetic),
+                number(e.gravitational),
+                number(e.elastic)
+            ),
+        ),
+        ("", format!("{} J dissipated", number(dissipated))),
+        ("residual", format!("{} J{share}", number(s.energy_residual))),
+        ("deepest contact", format!("{} m during the run", number(s.max_depth))),
+        ("", final_depths(s)),
+        ("results", folder.path().display().to_string()),
+        ("animation", folder.path().join("motion.html").display().to_string()),
+    ];
+    rows.extend(finished.notes.iter().map(|note| ("note", (*note).to_owned())));
+    rows.extend(warnings(s, relative).into_iter().map(|warning| ("warning", warning)));
+    columns(&rows)
+}
+
+fn bodies_of(s: &Summary) -> String {
+    let plural = if s.bodies == 1 { "body" } else { "bodies" };
+    format!("{}, {} {plural}, {} particles", s.scene, s.bodies, count(s.particles))
+}
+
+fn integrator(s: &Summary) -> String {
+    let critical = s.critical_dt.map_or(String::new(), |critical| {
+        format!(", {} of the critical {} s", number(s.dt / critical), number(critical))
+    });
+    format!("{}, dt = {} s{critical}", s.integrator, number(s.dt))
+}
+
+/// All steps of the run and, if it was resumed, how many of them were taken now.
+fn steps(finished: &Finished) -> String {
+    let all = count(finished.summary.steps);
+    if finished.steps_here == finished.summary.steps {
+        return all;
+    }
+    format!("{all}, the last {}", count(finished.steps_here))
+}
+
+fn final_depths(s: &Summary) -> String {
+    let walls = format!("{} m with a wall", number(s.wall_depth_end));
+    if s.bodies == 1 {
+        return format!("{walls} at the end");
+    }
+    format!("{} m between bodies, {walls} at the end", number(s.body_depth_end))
+}
+
+/// Reasons not to trust the results.
+fn warnings(s: &Summary, relative_residual: f64) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(critical) = s.critical_dt.filter(|&critical| s.dt > critical) {
+        let critical = number(critical);
+        warnings.push(format!("dt is above the critical {critical} s: contacts are unstable"));
+    }
+    if relative_residual.abs() > 0.01 {
+        let remedy = if s.integrator == "euler" {
+            "use integrator = \"splitting\" or a smaller dt"
+        } else {
+            "use a smaller dt or set energy_tolerance"
+        };
+        let percent = 100.0 * relative_residual;
+        warnings.push(format!("the residual is {percent:+.2} % of the energy: {remedy}"));
+    }
+    warnings
+}

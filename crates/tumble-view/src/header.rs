@@ -1,0 +1,14 @@
+//! The header of a live session: what a page needs before the first frame.
+
+use tumble_io::page::Head;
+
+use crate::Session;
+use crate::parameters::parameters;
+
+/// The header as JSON, in the format of `motion.html`, with the list of sliders.
+pub fn json(session: &Session) -> String {
+    let mut header = Head::of(session.scene(), session.world());
+    header.live = true;
+    header.parameters = parameters(session.next_scene());
+    header.to_json()
+}
