@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes docs/validation.md and the pictures in docs/pictures. Takes a minute.
+# Generates docs/validation.md and the pictures in docs/pictures. Takes about a minute.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 cargo build --release --locked
@@ -22,16 +22,16 @@ $tumble verify --markdown >docs/validation.md
 cat >>docs/validation.md <<'PAGE'
 ## Pictures
 
-The spinning cat of the first task, undamped, for 3 s. Under `euler` it gains energy with every turn; by the
-end the residual is four tenths of the energy at the start:
+The spinning cat of the first task, without losses, for 3 s. Under `euler` its energy grows with every revolution. At
+the end the residual is four tenths of the energy at the start:
 
 ![energy under euler](pictures/energy-euler.svg)
 
-The same scene, the same step, under `splitting`:
+The same scene with the same time step, under `splitting`:
 
 ![energy under splitting](pictures/energy-splitting.svg)
 
-A box that tumbles down a slope and loses its energy to dashpots and slip, all of it accounted for:
+A box tumbles down a slope and loses its energy to dashpots and slip. The residual stays close to zero:
 
 ![energy on the slope](pictures/energy-slope.svg)
 PAGE

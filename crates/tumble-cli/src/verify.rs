@@ -84,7 +84,7 @@ fn text(case: &Case, checks: &[Check]) -> String {
     let width =
         |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<_> = (0..6).map(width).collect();
-    let mut out = format!("{}: {}\n", case.name, case.about);
+    let mut out = format!("{}: {}\n", case.name, case.description);
     for row in &rows {
         let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}"));
         let line = format!("  {}  {}", cells.collect::<Vec<_>>().join("  "), row[6]);
@@ -102,7 +102,7 @@ The physics against theory: made by `docs/make.sh`, the tables by `tumble verify
 ";
 
 fn markdown(case: &Case, checks: &[Check]) -> String {
-    let mut out = format!("## {}\n\n{}\n\n", case.name, case.about);
+    let mut out = format!("## {}\n\n{}\n\n", case.name, case.description);
     out.push_str(
         "| quantity | expected | measured | off by | bound | verdict | |\n|---|---|---|---|---|---|---|\n",
     );

@@ -1,20 +1,23 @@
-//! What a case is, and how it is judged.
+//! What a case is, and how its numbers are judged.
 
 use std::fmt;
 
-/// Something that went wrong instead of being measured.
-pub type Outcome = Result<Vec<Check>, Box<dyn std::error::Error>>;
+/// Any error that keeps a case from running.
+pub(crate) type Error = Box<dyn std::error::Error>;
 
-/// A case: one piece of physics with a known answer.
+/// The checks of a case, or the error that kept it from running.
+pub type Outcome = Result<Vec<Check>, Error>;
+
+/// A case: one physical effect with a known answer.
 #[derive(Clone, Copy)]
 pub struct Case {
-    /// Its name.
+    /// The name, as `tumble verify NAME` takes it.
     pub name: &'static str,
-    /// What is done, and where the answer comes from.
-    pub about: &'static str,
-    /// Measures it.
+    /// What is simulated, and where the expected values come from.
+    pub description: &'static str,
+    /// Runs the case.
     pub run: fn() -> Outcome,
-    /// Takes more than a few seconds without optimisation.
+    /// Whether the case takes more than a few seconds without optimisation.
     pub slow: bool,
 }
 
@@ -24,25 +27,25 @@ impl fmt::Debug for Case {
     }
 }
 
-/// One measured number against the one that theory gives.
+/// One measured number and the value that theory predicts.
 #[derive(Clone, Debug)]
 pub struct Check {
-    /// What is measured, with its setting.
+    /// What is measured, and with which settings.
     pub quantity: String,
-    /// What theory says.
+    /// The value that theory predicts.
     pub expected: f64,
-    /// What came out.
+    /// The value of the simulation.
     pub measured: f64,
-    /// How far apart they may be.
+    /// The largest allowed absolute difference of the two.
     pub bound: f64,
-    /// The unit of all three.
+    /// The unit of `expected`, `measured` and `bound`; empty for a dimensionless number.
     pub unit: &'static str,
-    /// What it cost, or anything else worth knowing.
+    /// Further information, such as the number of force evaluations; may be empty.
     pub remark: String,
 }
 
 impl Check {
-    /// `measured` must be within `bound` of `expected`, all in `unit`.
+    /// A check that `measured` is within `bound` of `expected`, all in `unit`.
     pub fn new(
         quantity: impl Into<String>,
         expected: f64,
@@ -54,7 +57,7 @@ impl Check {
         Self { quantity, expected, measured, bound, unit, remark: String::new() }
     }
 
-    /// An error that must be below `bound`.
+    /// A check that an error is at most `bound` in absolute value, both in `unit`.
     pub fn error(
         quantity: impl Into<String>,
         measured: f64,
@@ -64,13 +67,13 @@ impl Check {
         Self::new(quantity, 0.0, measured, bound, unit)
     }
 
-    /// Adds a remark.
+    /// Sets the remark.
     pub fn remark(mut self, remark: impl Into<String>) -> Self {
         self.remark = remark.into();
         self
     }
 
-    /// Whether it is within its bound; NaN never is.
+    /// Whether the measured value is within its bound; false for NaN.
     pub fn passed(&self) -> bool {
         (self.measured - self.expected).abs() <= self.bound
     }

@@ -1,22 +1,23 @@
-//! The physics of [`tumble`] against theory, case by case.
+//! Verification of [`tumble`]: simulations whose results theory predicts.
 //!
 //! Every expected value comes from a formula, from a conserved quantity or from an independent
-//! computation; none from an earlier run. [`CASES`] is what `tumble verify` prints and what the
-//! tests of this package run.
+//! computation, never from an earlier run. [`CASES`] lists all cases. `tumble verify` prints them,
+//! and the tests of this package run the quick ones.
 
 mod check;
+mod collision;
 mod contact;
 mod flight;
 mod friction;
-mod held;
+mod invariance;
+mod kinematic;
 mod ledger;
-mod meeting;
 mod remeshing;
-mod symmetry;
+mod setup;
 
 pub use check::{Case, Check, Outcome};
 
-/// All cases, flight first.
+/// All cases, in the order in which `tumble verify` runs them.
 pub const CASES: &[Case] = &[
     flight::FREE_FALL,
     flight::DRAG,
@@ -31,18 +32,18 @@ pub const CASES: &[Case] = &[
     friction::SLIDING,
     friction::SLOPE,
     friction::ROLLING,
-    meeting::COLLISION,
-    meeting::LEDGER,
-    meeting::ORDER,
-    meeting::CRADLE,
-    meeting::UNEQUAL,
-    meeting::OBLIQUE,
-    held::SLOPE,
-    held::FLOOR,
-    held::BELT,
-    held::PISTON,
+    collision::COLLISION,
+    collision::LEDGER,
+    collision::ORDER,
+    collision::CRADLE,
+    collision::UNEQUAL,
+    collision::OBLIQUE,
+    kinematic::SLOPE,
+    kinematic::WALL_OR_MESH,
+    kinematic::BELT,
+    kinematic::PISTON,
     remeshing::REMESHING,
-    symmetry::SCALE,
-    symmetry::WALLS,
+    invariance::SCALE,
+    invariance::WALLS,
     ledger::SCENES,
 ];
