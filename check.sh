@@ -18,6 +18,9 @@ if [ "${1:-}" = --e2e ]; then
     exit
 fi
 
+out=$(mktemp -d)
+trap 'rm -rf "$out"' EXIT
+
 say "format"
 cargo fmt --all --check
 
@@ -27,6 +30,15 @@ cargo clippy --workspace --all-targets --locked -- -D warnings
 say "tests (the README's command)"
 cargo test --locked
 
+say "examples of the library"
+for example in crates/tumble/examples/*.rs; do
+    echo "-- $(basename "$example" .rs)"
+    cargo run --quiet --release --locked -p tumble --example "$(basename "$example" .rs)" > "$out/example" || {
+        cat "$out/example"
+        exit 1
+    }
+done
+
 say "tests of the cat's modeller, and the cat as it would model it again"
 cargo test --release -p tumble-modeller --locked
 
@@ -35,8 +47,6 @@ RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
 
 say "every built-in scene"
 cargo build --release --locked
-out=$(mktemp -d)
-trap 'rm -rf "$out"' EXIT
 for scene in $(target/release/tumble scenes | awk '{ print $1 }'); do
     target/release/tumble run "$scene" --out "$out/$scene"
 done
@@ -46,5 +56,8 @@ target/release/tumble verify
 
 say "hostile input: a bounded run of every fuzz target"
 fuzz/run.sh 10
+
+say "packages: each published crate builds from what it would upload"
+cargo publish --workspace --dry-run --allow-dirty --locked
 
 say "all checks passed"

@@ -17,7 +17,7 @@ use super::head::Head;
 
 macro_rules! modules {
     ($($name:literal),* $(,)?) => {
-        [$(Module { name: $name, text: include_str!(concat!("../../../../viewer/", $name, ".js")) }),*]
+        [$(Module { name: $name, text: include_str!(concat!("../../embedded/viewer/", $name, ".js")) }),*]
     };
 }
 
@@ -34,8 +34,8 @@ pub(super) const MODULES: [Module; 28] = modules![
     "mouse_spring", "keyboard", "app", "main",
 ];
 
-const PAGE: &str = include_str!("../../../../viewer/index.html");
-const STYLE: &str = include_str!("../../../../viewer/style.css");
+const PAGE: &str = include_str!("../../embedded/viewer/index.html");
+const STYLE: &str = include_str!("../../embedded/viewer/style.css");
 
 const STYLE_LINK: &str = r#"<link rel="stylesheet" href="style.css">"#;
 const SCRIPT_LINK: &str = r#"<script type="module" src="main.js"></script>"#;

@@ -29,7 +29,7 @@ pub const SHAPE_KEYS: [&str; 12] = [
     "thickness",
 ];
 
-const CAT: &[u8] = include_bytes!("../../../../assets/cat.obj");
+const CAT: &[u8] = include_bytes!("../../embedded/cat.obj");
 
 /// A built-in shape with its keys.
 #[derive(Clone, Copy, Debug, PartialEq)]
