@@ -7,7 +7,7 @@ use glam::{DMat3, DQuat, DVec3};
 use crate::stage::{self, Pull};
 use crate::{
     BodyForces, BodyModel, BodyState, Depths, Energy, Model, Scratch, State, StateError, StepError,
-    WorldBuilder, Wrench, step::step,
+    Wrench, step::step,
 };
 
 /// A model and its state, and the means to advance it.
@@ -22,11 +22,6 @@ pub struct World {
 }
 
 impl World {
-    /// Starts the description of a world.
-    pub fn builder() -> WorldBuilder {
-        WorldBuilder::default()
-    }
-
     pub(crate) fn of(model: Model, state: State) -> Self {
         Self { model, state, scratch: Scratch::default(), pull: None, pulled: 0.0 }
     }
