@@ -70,7 +70,7 @@ impl WorldBuilder {
                 body: critical.body,
             },
         ));
-        if errors.is_empty() { Ok(World::of(model, state)) } else { Err(BuildErrors(errors)) }
+        if errors.is_empty() { Ok(World::new(model, state)) } else { Err(BuildErrors(errors)) }
     }
 }
 

@@ -173,7 +173,7 @@ impl SignedDistance {
     fn evaluate(&self, point: DVec3, slot: usize) -> Nearest {
         let frame = self.tree.frame(slot);
         let ClosestPoint { feature, offset, squared } = frame.closest_point(point);
-        let offset_world = frame.to_world(offset);
+        let offset_world = frame.world_vector(offset);
         let distance = if feature == FACE { offset.z.abs() } else { squared.sqrt() };
         let normals = &self.normals[slot];
         let normal = if feature == FACE { frame.normal } else { normals.get(feature) };

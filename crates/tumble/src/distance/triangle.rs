@@ -108,18 +108,18 @@ impl Frame {
     /// The local coordinates of a point (m).
     #[inline(always)]
     pub fn local(&self, point: DVec3) -> DVec3 {
-        self.to_local(point - self.origin)
+        self.local_vector(point - self.origin)
     }
 
     /// A vector transformed to the local frame.
     #[inline(always)]
-    fn to_local(&self, v: DVec3) -> DVec3 {
+    fn local_vector(&self, v: DVec3) -> DVec3 {
         DVec3::new(v.dot(self.along), v.dot(self.across), v.dot(self.normal))
     }
 
     /// A vector transformed from the local frame.
     #[inline(always)]
-    pub fn to_world(&self, v: DVec3) -> DVec3 {
+    pub fn world_vector(&self, v: DVec3) -> DVec3 {
         self.along * v.x + self.across * v.y + self.normal * v.z
     }
 
