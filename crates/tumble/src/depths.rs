@@ -1,33 +1,37 @@
-//! How deep bodies are in what they touch.
+//! Penetration depths.
 
 use crate::contact::BodyContacts;
 use crate::contact::wall::depth_behind;
 use crate::kinematics::Kinematics;
 use crate::{Model, State};
 
-/// The deepest contacts at one moment (m); 0 where nothing touches. With springs for contact nothing is ever quite outside of what
-/// it touches: whether that matters is told by comparing these with the size of the bodies.
+/// The largest penetration depths at one time (m), 0 without contact.
+///
+/// Contact by springs always involves some penetration; compare these values with the size of the bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ContactDepths {
-    /// Between two bodies.
+pub struct Depths {
+    /// The largest depth between two bodies.
     pub bodies: f64,
-    /// Behind a wall.
+    /// The largest depth behind a wall.
     pub walls: f64,
 }
 
-impl ContactDepths {
-    /// Those of a state.
+impl Depths {
+    /// The depths of a state.
     pub fn of(model: &Model, state: &State) -> Self {
         Self::with(model, state, BodyContacts::default())
     }
 
-    /// As [`ContactDepths::of`]; reuses the neighbour lists of `contacts`.
-    pub(crate) fn with(model: &Model, state: &State, mut contacts: BodyContacts) -> Self {
-        let [bodies, mut walls] = contacts.max_depths(model, state);
-        let bare = model.bodies.iter().zip(&state.bodies);
-        for (body, state) in bare.filter(|(body, _)| body.is_free() && !body.has_spheres()) {
-            let kinematics = Kinematics::new(body, state);
-            let deepest = model.walls.iter().map(|wall| depth_behind(&kinematics, wall));
+    /// As [`Depths::of`], with contact data that may be reused.
+    pub(crate) fn with(model: &Model, state: &State, mut meeting: Meeting) -> Self {
+        let [bodies, mut walls] = meeting.depths(model, state);
+        let bodies_and_states = model.bodies.iter().zip(&state.bodies);
+        // spheres against walls are among the contacts above
+        for (body, state) in
+            bodies_and_states.filter(|(body, _)| body.is_free() && !body.has_spheres())
+        {
+            let place = Placed::new(body, state);
+            let deepest = model.walls.iter().map(|wall| place.depth_behind(wall));
             walls = deepest.fold(walls, f64::max);
         }
         Self { bodies, walls }
@@ -44,9 +48,9 @@ mod tests {
         Body::new(shape.unwrap()).surface(surface).position(DVec3::X * x)
     }
 
-    /// Two balls of 0.1 m, 0.199 m apart, the first 2 mm behind a wall; and a particle 4 mm behind it.
+    /// Two spheres of radius 0.1 m, 0.199 m apart, the first 2 mm behind a wall; and a particle 4 mm behind it.
     #[test]
-    fn depths_are_those_of_the_deepest() {
+    fn depths_are_those_of_the_deepest_contacts() {
         let spheres = Surface::Spheres { radius: 0.1 };
         let wall = WallPlane { normal: DVec3::X, offset: 0.0 };
         let pair =

@@ -1,25 +1,25 @@
-//! The account of every joule.
+//! The energy ledger.
 
 use crate::contact::BodyContacts;
 use crate::kinematics::Kinematics;
 use crate::{Model, State};
 
-/// Where the energy of a run is, or went, at one moment (J).
+/// The energy of a run at one time, and its losses up to that time (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
-    /// ½ M v² + ½ L·ω, over all bodies.
+    /// Kinetic energy ½ M v² + ½ L·ω of all free bodies.
     pub kinetic: f64,
-    /// −M g·x, zero at the origin.
+    /// Potential energy −M g·x, zero at the origin.
     pub gravitational: f64,
     /// Stored in the springs of contacts.
     pub elastic: f64,
-    /// Lost so far to the drag of the medium.
+    /// Total loss to the drag of the medium.
     pub drag: f64,
-    /// Lost so far to the dashpots of contacts.
+    /// Total loss to the dashpots of contacts.
     pub dashpot: f64,
-    /// Lost so far to slip against friction.
+    /// Total loss to frictional slip.
     pub slip: f64,
-    /// What bodies whose motion is prescribed have put in so far.
+    /// Total work done by bodies with prescribed motion.
     pub work: f64,
 }
 
@@ -29,8 +29,8 @@ impl Energy {
         Self::with(model, state, BodyContacts::default())
     }
 
-    /// As [`Energy::of`]; reuses the neighbour lists of `contacts`.
-    pub(crate) fn with(model: &Model, state: &State, mut contacts: BodyContacts) -> Self {
+    /// As [`Energy::of`], with contact data that may be reused.
+    pub(crate) fn with(model: &Model, state: &State, mut meeting: Meeting) -> Self {
         let mut energy = Self {
             drag: state.totals.drag,
             dashpot: state.totals.dashpot,
@@ -53,7 +53,7 @@ impl Energy {
         energy
     }
 
-    /// The sum of all columns, less the work put in. It keeps its first value, but for the integrator's error.
+    /// The sum of all terms minus the work. It is constant up to the error of the integrator.
     pub fn total(&self) -> f64 {
         self.kinetic + self.gravitational + self.elastic + self.drag + self.dashpot + self.slip
             - self.work

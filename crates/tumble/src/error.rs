@@ -1,4 +1,4 @@
-//! What can go wrong, in words that say where and what to do.
+//! Errors of building and stepping a world.
 
 use crate::SurfaceError;
 
@@ -31,32 +31,32 @@ pub enum BuildError {
         body: String,
         /// The wall's normal.
         normal: [f64; 3],
-        /// How deep the centre of mass lies behind it (m).
+        /// The depth of the centre of mass behind the wall (m).
         depth: f64,
     },
-    /// The step is longer than contact can bear.
+    /// The time step is above the critical one.
     Unstable {
         /// The step (s).
         dt: f64,
-        /// The longest stable step (s).
+        /// The largest stable step (s).
         critical: f64,
-        /// Name of the body with the fastest contact.
+        /// Name of the body that determines it.
         body: String,
     },
-    /// A body cannot be met by its mesh.
+    /// The mesh of a body cannot be its collision surface.
     Surface {
         /// Name of the body.
         body: String,
         /// What is wrong with the mesh.
         error: Box<SurfaceError>,
     },
-    /// Two bodies start in each other.
+    /// Two bodies overlap initially.
     Overlap {
-        /// Name of the one.
+        /// Name of one body.
         first: String,
-        /// Name of the other.
+        /// Name of the other body.
         second: String,
-        /// How deep they are in each other (m).
+        /// The penetration depth (m).
         depth: f64,
     },
     /// Two bodies have the same name.
@@ -83,15 +83,15 @@ impl std::fmt::Display for BuildError {
             Self::Unstable { dt, critical, body } => write!(
                 f,
                 "`dt` is {dt} s, but contact of body \"{body}\" is stable only up to {critical:.3e} s; \
-                 take a smaller `dt` or `collision_stiffness`, or insist with --force"
+                 use a smaller `dt` or `collision_stiffness`, or insist with --force"
             ),
             Self::Surface { body, error } => {
                 write!(f, "body \"{body}\" cannot have `surface = \"mesh\"`: {error}")
             }
             Self::Overlap { first, second, depth } => write!(
                 f,
-                "bodies \"{first}\" and \"{second}\" start {depth:.3e} m in each other; move one of them by its `position`, \
-                 or have them pushed apart by `overlaps = \"push\"`"
+                "bodies \"{first}\" and \"{second}\" start {depth:.3e} m in each other; change the `position` of one of them, \
+                 or have them pushed apart with `overlaps = \"push\"`"
             ),
             Self::SameName { body } => {
                 write!(f, "two bodies are called \"{body}\"; give each its own `name`")
@@ -102,10 +102,10 @@ impl std::fmt::Display for BuildError {
 
 impl std::error::Error for BuildError {}
 
-/// Everything that keeps a world from being built.
+/// All errors in the description of a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BuildErrors(
-    /// One entry a problem, at least one.
+    /// The errors, at least one.
     pub Vec<BuildError>,
 );
 
@@ -118,7 +118,7 @@ impl std::fmt::Display for BuildErrors {
 
 impl std::error::Error for BuildErrors {}
 
-/// A step whose result cannot be trusted.
+/// A step whose result is not valid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepError {
     /// Number of the step, counted from 1.
@@ -127,16 +127,16 @@ pub struct StepError {
     pub time: f64,
     /// Name of the body.
     pub body: String,
-    /// The particle that it is about, if it is one.
+    /// Index of the particle, if the error concerns one.
     pub particle: Option<usize>,
-    /// What is wrong: a field of [`BodyState`](crate::BodyState), the `depth` of a contact (m), or the
-    /// `displacement` of a particle in one step (m).
+    /// The quantity that is wrong: a field of [`BodyState`](crate::BodyState), the `depth` of a contact (m), or
+    /// the `displacement` of a particle in one step (m).
     pub quantity: &'static str,
     /// Its value.
     pub value: f64,
-    /// Name of the other body, where it could pass through one.
+    /// Name of the other body, if the body could pass through it.
     pub other: Option<String>,
-    /// A step (s) that would do, where one can be named.
+    /// A suggested time step (s), if there is one.
     pub dt: Option<f64>,
 }
 
@@ -158,7 +158,7 @@ impl std::fmt::Display for StepError {
             ),
             (Some(dt), None) => write!(
                 f,
-                " m, more than half the way to the opposite wall; try --set dt={dt:.1e} or a larger \
+                " m, more than half the distance to the opposite wall; try --set dt={dt:.1e} or a larger \
                  `collision_stiffness`"
             ),
             (None, _) => write!(f, "; try a smaller `dt` or a smaller `collision_stiffness`"),

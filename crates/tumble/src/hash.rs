@@ -1,15 +1,16 @@
-//! One short number for a whole state, to compare runs by.
+//! A hash of the state, for comparing runs.
 
 use sha2::{Digest, Sha256};
 
 use crate::{PairSpring, State};
 
 impl State {
-    /// The first 16 bytes of the SHA-256 of the state as little-endian numbers, in hexadecimal:
-    /// step, time, then position, velocity, orientation (w, x, y, z) and its rest, angular momentum and
-    /// energy owed of each
-    /// body with its friction springs, then the friction springs between bodies, then the totals (with its work unless that is
-    /// zero). Two runs agree to the last bit when, and only when, their hashes do.
+    /// The first 16 bytes of the SHA-256 of the state, in hexadecimal.
+    ///
+    /// The state is hashed as little-endian numbers: step, time, then for each body position, velocity,
+    /// orientation (w, x, y, z), `orientation_rest`, angular momentum, `energy_owed` and friction springs, then
+    /// the friction springs between bodies, then the tally (with its work unless that is zero). Two states with
+    /// equal hashes are equal bit for bit.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();
         let mut put = |value: f64| hasher.update(value.to_le_bytes());

@@ -1,25 +1,24 @@
-//! Eight vectors side by side, one a lane: arithmetic that gives the same bits whatever the width of
-//! the processor's registers.
+//! Vectors in eight SIMD lanes, with results that do not depend on the SIMD width of the processor.
 //!
-//! Sums over particles run in eight fixed lanes, which are added at the end in a fixed order. No multiplication
-//! is fused with an addition.
+//! Sums over particles use eight lanes, which are added at the end in a fixed order. Multiplications and additions
+//! are not fused.
 
 use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
 use glam::{DMat3, DVec3};
 
-/// How many lanes there are.
+/// The number of lanes.
 pub(crate) const LANES: usize = 8;
 
-/// Eight vectors in memory, by coordinate.
+/// Eight vectors in memory, as arrays of coordinates.
 pub(crate) type Columns = [[f64; LANES]; 3];
 
-/// One of eight vectors.
+/// The vector in one lane.
 #[inline(always)]
 pub(crate) fn vector(columns: &Columns, lane: usize) -> DVec3 {
     DVec3::new(columns[0][lane], columns[1][lane], columns[2][lane])
 }
 
-/// Sets one of eight vectors.
+/// Sets the vector in one lane.
 #[inline(always)]
 pub(crate) fn set(columns: &mut Columns, lane: usize, v: DVec3) {
     for (column, value) in columns.iter_mut().zip(v.to_array()) {
@@ -27,7 +26,7 @@ pub(crate) fn set(columns: &mut Columns, lane: usize, v: DVec3) {
     }
 }
 
-/// Eight vectors.
+/// Eight vectors in SIMD registers.
 #[derive(Clone, Copy)]
 pub(crate) struct Vec3x8<S: Simd> {
     pub x: f64x8<S>,
@@ -42,7 +41,7 @@ impl<S: Simd> Vec3x8<S> {
         Self { x: f64x8::splat(simd, v.x), y: f64x8::splat(simd, v.y), z: f64x8::splat(simd, v.z) }
     }
 
-    /// One vector a lane, by coordinate.
+    /// Loads eight vectors from memory.
     #[inline(always)]
     pub fn load(simd: S, columns: &Columns) -> Self {
         let [x, y, z] = columns;
@@ -53,7 +52,7 @@ impl<S: Simd> Vec3x8<S> {
         }
     }
 
-    /// By coordinate, one vector a lane.
+    /// Stores eight vectors to memory.
     #[inline(always)]
     pub fn store(self) -> Columns {
         [self.x.into(), self.y.into(), self.z.into()]
@@ -85,19 +84,19 @@ impl<S: Simd> Vec3x8<S> {
         }
     }
 
-    /// The part of each vector across the unit vector `normal`.
+    /// The component of each vector perpendicular to the unit vector `normal`.
     #[inline(always)]
     pub fn across(self, normal: Self) -> Self {
         self - normal * self.dot(normal)
     }
 
-    /// Each vector divided by a number.
+    /// Each vector divided by a scalar.
     #[inline(always)]
     pub fn over(self, divisor: f64x8<S>) -> Self {
         Self { x: self.x / divisor, y: self.y / divisor, z: self.z / divisor }
     }
 
-    /// From the one where `mask` is set, from the other elsewhere.
+    /// `set` in the lanes where `mask` is set, `unset` in the others.
     #[inline(always)]
     pub fn select(mask: mask64x8<S>, set: Self, unset: Self) -> Self {
         Self {
@@ -145,26 +144,26 @@ impl<S: Simd> std::ops::AddAssign for Vec3x8<S> {
     }
 }
 
-/// The sum over the lanes, from the first to the last.
+/// The sum over the lanes, in order.
 #[inline(always)]
 pub(crate) fn sum<S: Simd>(lanes: f64x8<S>) -> f64 {
     <[f64; LANES]>::from(lanes).iter().sum()
 }
 
-/// The largest of the lanes, none of them NaN, or zero.
+/// The largest lane or zero, whichever is larger. No lane may be NaN.
 #[inline(always)]
 pub(crate) fn largest<S: Simd>(lanes: f64x8<S>) -> f64 {
     <[f64; LANES]>::from(lanes).iter().fold(0.0, |m: f64, &lane| m.max(lane))
 }
 
-/// Where a lane is above zero, itself; else zero.
+/// Each lane if positive, else zero.
 #[inline(always)]
 pub(crate) fn positive<S: Simd>(simd: S, lanes: f64x8<S>) -> f64x8<S> {
     let zero = f64x8::splat(simd, 0.0);
     lanes.simd_gt(zero).select(lanes, zero)
 }
 
-/// Every level of SIMD that this processor offers, the widest first.
+/// The SIMD levels that this processor supports, the widest first.
 #[cfg(test)]
 pub(crate) fn levels() -> Vec<fearless_simd::Level> {
     use fearless_simd::Level;

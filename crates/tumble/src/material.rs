@@ -1,37 +1,37 @@
-//! What a contact is made of.
+//! Materials and the contact law between particles and walls.
 
 use std::f64::consts::PI;
 
-/// How a contact loses energy along its normal.
+/// The normal damping of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Damping {
     /// `collision_damping`: a dashpot c_n (N·s/m).
     Dashpot(f64),
-    /// `restitution`: the dashpot that throws a single particle back at e times its speed, 0 < e ≤ 1.
+    /// `restitution`: the dashpot for which a single particle rebounds at e times its speed, 0 < e ≤ 1.
     Restitution(f64),
 }
 
-/// The material of contacts, as scenes say it.
+/// The material of contacts, with the quantities of scene files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Stiffness k of a particle's contact spring (N/m).
     pub collision_stiffness: f64,
-    /// Stiffness κ of a surface (N/m³), instead of k where it is given: a particle has k = κ A, A its share of
-    /// the body's surface, so that how a body bounces does not depend on how finely it is sampled. All else
-    /// that is said per particle is then said of a particle of mean area, and scales with A.
+    /// Stiffness κ per surface area (N/m³), which replaces k if given: a particle of surface area A has
+    /// k = κ A, so that the rebound of a body does not depend on the number of its particles. All other
+    /// quantities per particle then refer to a particle of mean area, and scale with A.
     pub collision_stiffness_per_area: Option<f64>,
-    /// Its dashpot.
+    /// Normal damping.
     pub damping: Damping,
     /// Coulomb coefficient of friction μ.
     pub friction_stiffness: f64,
     /// Stiffness k_t of the tangential spring (N/m); `None` is 2/7 of k.
     pub friction_spring: Option<f64>,
-    /// Tangential dashpot c_t (N·s/m); `None` is √(m k_t), half of what is critical for one particle.
+    /// Tangential dashpot c_t (N·s/m); `None` is √(m k_t), half the critical damping of one particle.
     pub friction_damping: Option<f64>,
 }
 
 impl Default for Material {
-    /// k = 1e4 N/m without dashpot or friction, as in the basic system.
+    /// k = 1e4 N/m without damping or friction, as in the basic system.
     fn default() -> Self {
         Self {
             collision_stiffness: 1e4,
@@ -44,12 +44,12 @@ impl Default for Material {
     }
 }
 
-/// What a wall or a body says about its own contacts; the rest comes from the world's material.
+/// Quantities that a wall or a body overrides for its own contacts; the rest comes from the world's material.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MaterialOverride {
-    /// See [`Material::collision_stiffness`]; takes the place of a stiffness per area of the rest.
+    /// See [`Material::collision_stiffness`]; it also replaces a stiffness per area of the base material.
     pub collision_stiffness: Option<f64>,
-    /// See [`Material::collision_stiffness_per_area`]; heard before `collision_stiffness` if both are given.
+    /// See [`Material::collision_stiffness_per_area`]; it takes precedence over `collision_stiffness`.
     pub collision_stiffness_per_area: Option<f64>,
     /// See [`Material::damping`].
     pub damping: Option<Damping>,
@@ -62,13 +62,13 @@ pub struct MaterialOverride {
 }
 
 impl MaterialOverride {
-    /// These values over a material that says the rest.
+    /// The material `rest` with these values in place of its own.
     pub fn over(self, rest: Material) -> Material {
         let per_area = self.collision_stiffness_per_area;
-        let says_stiffness = per_area.is_some() || self.collision_stiffness.is_some();
+        let has_stiffness = per_area.is_some() || self.collision_stiffness.is_some();
         Material {
             collision_stiffness: self.collision_stiffness.unwrap_or(rest.collision_stiffness),
-            collision_stiffness_per_area: if says_stiffness {
+            collision_stiffness_per_area: if has_stiffness {
                 per_area
             } else {
                 rest.collision_stiffness_per_area
@@ -82,7 +82,7 @@ impl MaterialOverride {
 }
 
 impl From<Material> for MaterialOverride {
-    /// One that says everything that the material says.
+    /// An override with all values of the material.
     fn from(material: Material) -> Self {
         Self {
             collision_stiffness: match material.collision_stiffness_per_area {
@@ -99,14 +99,14 @@ impl From<Material> for MaterialOverride {
 }
 
 impl Material {
-    /// The material between a wall and a body: what only one of them says holds, and a wall is
-    /// heard before a body.
+    /// The material of contacts between a wall and a body. Values of the wall take precedence over those of
+    /// the body, and both over the world's.
     pub fn between(self, wall: MaterialOverride, body: MaterialOverride) -> Self {
         wall.over(body.over(self))
     }
 
-    /// The material of particles that share a surface of `area` (m²) each, at the mean: a stiffness per area
-    /// becomes one per particle.
+    /// The material of particles with a mean surface area of `area` (m²): a stiffness per area becomes a
+    /// stiffness per particle.
     pub fn at_area(self, area: f64) -> Self {
         match self.collision_stiffness_per_area {
             Some(stiffness) => Self {
@@ -118,8 +118,9 @@ impl Material {
         }
     }
 
-    /// The law of contact for particles of `mass` m (kg). Of a material with a stiffness per area,
-    /// [`Material::at_area`] is to be taken first.
+    /// The contact law for particles of `mass` m (kg).
+    ///
+    /// Apply [`Material::at_area`] first if the material has a stiffness per area.
     pub fn law(&self, mass: f64) -> ContactLaw {
         let k = self.collision_stiffness;
         let friction_spring = self.friction_spring.unwrap_or(2.0 / 7.0 * k);
@@ -136,9 +137,10 @@ impl Material {
     }
 }
 
-/// The law of contact between the particles of one body and one wall. Where they have weights
-/// ([`Particles::weight`](crate::Particles::weight)) it is the law of one that weighs 1, and all forces of a particle
-/// are multiplied by its weight.
+/// The contact law between the particles of one body and one wall.
+///
+/// For particles with weights ([`Particles::weight`](crate::Particles::weight)) it is the law at weight 1, and the
+/// forces on a particle are multiplied by its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw {
     /// Normal spring k (N/m).
@@ -154,23 +156,23 @@ pub struct ContactLaw {
 }
 
 impl ContactLaw {
-    /// Whether nothing but the normal spring acts, so that the law is a sum over depths.
+    /// Whether only the normal spring acts.
     pub fn is_elastic(&self) -> bool {
         self.damping == 0.0 && self.friction == 0.0
     }
 
-    /// Whether a force depends on velocity.
+    /// Whether any force depends on velocity.
     pub fn is_damped(&self) -> bool {
         self.damping > 0.0 || (self.friction > 0.0 && self.friction_damping > 0.0)
     }
 }
 
-/// Coefficient of restitution of a particle on a spring and dashpot whose sum never pulls, without
-/// gravity, for the damping ratio ζ = c_n / (2 √(k m)).
+/// Coefficient of restitution of a particle on a spring and dashpot, for the damping ratio ζ = c_n / (2 √(k m)).
 ///
-/// The contact ends when the force, not the depth, is back at zero: T. Schwager & T. Pöschel, *Coefficient
-/// of restitution and linear-dashpot model revisited*, Granular Matter 9 (2007) 465. With
-/// w = √|1 − ζ²|: e = exp(−(ζ/w) θ), θ = atan2(2 ζ w, 2 ζ² − 1), and its hyperbolic twin for ζ > 1.
+/// The sum of spring and dashpot is never attractive: the contact ends when the force, not the depth, returns to
+/// zero (T. Schwager & T. Pöschel, *Coefficient of restitution and linear-dashpot model revisited*, Granular Matter
+/// 9 (2007) 465). Without gravity and with w = √|1 − ζ²|: e = exp(−(ζ/w) θ), θ = atan2(2 ζ w, 2 ζ² − 1), and the
+/// hyperbolic equivalent for ζ > 1.
 pub fn restitution(ratio: f64) -> f64 {
     let z = ratio;
     let w2 = 1.0 - z * z;
@@ -186,7 +188,7 @@ pub fn restitution(ratio: f64) -> f64 {
     }
 }
 
-/// The damping ratio ζ that gives the restitution `e`, 0 < e ≤ 1, by bisection: e falls as ζ grows.
+/// The damping ratio ζ for a coefficient of restitution `e`, 0 < e ≤ 1, by bisection.
 pub fn damping_ratio(e: f64) -> f64 {
     if e >= 1.0 {
         return 0.0;
@@ -206,8 +208,8 @@ pub fn damping_ratio(e: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The damped oscillator itself, in small steps, until the force is back at zero.
-    fn measured(ratio: f64) -> f64 {
+    /// The restitution of the damped oscillator, integrated in small steps until the force returns to zero.
+    fn integrated(ratio: f64) -> f64 {
         let (mut x, mut v, h) = (0.0f64, 1.0f64, 1e-5);
         loop {
             let a = |x: f64, v: f64| -x - 2.0 * ratio * v;
@@ -222,16 +224,16 @@ mod tests {
     }
 
     #[test]
-    fn the_formula_is_that_of_the_oscillator() {
+    fn the_restitution_formula_agrees_with_the_integrated_oscillator() {
         for ratio in [0.01, 0.1, 0.3, 0.7, 0.72, 0.99, 1.5, 3.0] {
-            let (formula, found) = (restitution(ratio), measured(ratio));
+            let (formula, found) = (restitution(ratio), integrated(ratio));
             assert!((formula - found).abs() < 2e-4, "ζ = {ratio}: {formula} {found}");
         }
-        assert!((restitution(1.0) - measured(1.0)).abs() < 2e-4);
+        assert!((restitution(1.0) - integrated(1.0)).abs() < 2e-4);
     }
 
     #[test]
-    fn restitution_and_ratio_are_inverse() {
+    fn damping_ratio_is_the_inverse_of_restitution() {
         for e in [0.02, 0.1, 0.135, 0.5, 0.9, 0.999] {
             assert!((restitution(damping_ratio(e)) - e).abs() < 1e-9, "e = {e}");
         }

@@ -1,4 +1,4 @@
-//! What stays the same during a run.
+//! The model: everything that is constant during a run.
 
 use std::sync::Arc;
 
@@ -9,19 +9,19 @@ use crate::shape::Shape;
 use crate::wall::WallPlane;
 use crate::{BodyState, ContactLaw, Motion, PairMaterial, SignedDistance, Surface};
 
-/// How a step advances time.
+/// The time integrator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// Fly – push – fly: exact flight for half a step, a kick by the contact forces at that place,
-    /// exact flight for the other half. Second order, symplectic where the forces are conservative.
+    /// Drift – kick – drift: exact free flight for half a step, a kick by the contact forces at the midpoint,
+    /// and exact free flight for the other half. Second order; symplectic for conservative forces.
     #[default]
     Splitting,
-    /// The basic system, lines 2 to 9 in their order, explicit in rotation.
+    /// The basic system, lines 2 to 9 in order: semi-implicit Euler, explicit in rotation.
     Euler,
 }
 
 impl Integrator {
-    /// Its name in scene files.
+    /// The name in scene files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Splitting => "splitting",
@@ -39,53 +39,53 @@ pub struct Model {
     pub velocity_damping_stiffness: f64,
     /// Time step h (s).
     pub dt: f64,
-    /// How a step advances time.
+    /// The time integrator.
     pub integrator: Integrator,
-    /// Refine steps in contact until the energy that a part of them leaves unaccounted for is
-    /// below this part of the energy in play.
+    /// Steps in contact are refined until the energy error of each substep is below this fraction of the energy in
+    /// the contact; `None` disables refinement.
     pub energy_tolerance: Option<f64>,
-    /// The walls; none is free space.
+    /// The walls.
     pub walls: Vec<WallPlane>,
-    /// The smallest distance between two walls that face each other (m).
-    pub wall_gap: Option<f64>,
-    /// Whether there is a body that others can meet.
-    pub has_body_contact: bool,
-    /// One entry a body; bodies that are alike share theirs, so that it is at hand when the next of them is looked at.
+    /// The smallest distance between two opposite walls (m).
+    pub gap: Option<f64>,
+    /// Whether any body has a surface for contact with other bodies.
+    pub meets: bool,
+    /// One entry per body. Identical bodies share an entry, which improves the use of caches.
     pub bodies: Vec<Arc<BodyModel>>,
     /// The names of the bodies.
     pub names: Vec<String>,
 }
 
-/// What is constant about one body, and about all that are like it.
+/// The constant data of a body, shared by identical bodies.
 #[derive(Clone, Debug)]
 pub struct BodyModel {
-    /// Its particles and mass distribution; with weights where any of its contacts is stiff per area.
+    /// Particles and mass distribution; with area weights if any of its contacts has a stiffness per area.
     pub shape: Arc<Shape>,
     /// Mass M (kg).
     pub mass: f64,
     /// Inertia tensor I₀ about the centre of mass, body axes (kg·m²).
     pub inertia: DMat3,
-    /// I₀⁻¹, with zero along axes that carry no inertia (1/(kg·m²)).
+    /// I₀⁻¹, with zero along axes without inertia (1/(kg·m²)).
     pub inverse_inertia: DMat3,
-    /// The principal moments of `inverse_inertia`, in the order of the shape's principal axes.
+    /// The eigenvalues of `inverse_inertia`, in the order of the shape's principal axes.
     pub inverse_moments: DVec3,
-    /// How drag slows the body where its mass is not carried by equal particles.
+    /// The modes of drag, if the mass is not carried by equal particles.
     pub drag_modes: Option<Box<DragModes>>,
-    /// The contact law against each wall, in the order of [`Model::walls`].
+    /// The contact law with each wall, in the order of [`Model::walls`].
     pub contacts: Vec<ContactLaw>,
     /// Whether any of these contacts has friction.
     pub has_friction: bool,
-    /// Whether the force of any of these contacts depends on velocity.
+    /// Whether any of these contacts has forces that depend on velocity.
     pub is_damped: bool,
-    /// What it brings into contacts with other bodies.
+    /// The parameters of contacts with other bodies.
     pub pair_material: PairMaterial,
-    /// Particles, spheres and mesh are within this distance of the centre of mass (m).
+    /// The bounding radius of particles, spheres and mesh about the centre of mass (m).
     pub extent: f64,
-    /// What other bodies meet of it.
+    /// The surface for contact with other bodies.
     pub surface: Surface,
-    /// The distance to its mesh, where that is its surface.
-    pub signed_distance: Option<Arc<SignedDistance>>,
-    /// What moves it.
+    /// The signed distance to its mesh, if that is its surface.
+    pub solid: Option<Arc<SignedDistance>>,
+    /// How the body moves.
     pub motion: Motion,
 }
 
@@ -100,10 +100,10 @@ impl BodyModel {
         rotation * (self.inverse_inertia * (rotation.transpose() * angular_momentum))
     }
 
-    /// Line 7: the place xᵢ = x + R rᵢ (m) and velocity vᵢ = v + ω × R rᵢ (m/s) of one particle.
+    /// Line 7: the position xᵢ = x + R rᵢ (m) and velocity vᵢ = v + ω × R rᵢ (m/s) of one particle.
     ///
     /// # Panics
-    /// When the body has no particle of that index.
+    /// If the index is out of range.
     pub fn particle(&self, state: &BodyState, index: usize) -> (DVec3, DVec3) {
         let rotation = DMat3::from_quat(state.orientation);
         let arm = rotation * self.shape.particles().get(index);
@@ -111,18 +111,18 @@ impl BodyModel {
         (state.position + arm, state.velocity + omega.cross(arm))
     }
 
-    /// Whether forces move it.
+    /// Whether the body moves by forces.
     pub fn is_free(&self) -> bool {
         self.motion == Motion::Free
     }
 
-    /// Whether walls meet spheres about its particles instead of the particles themselves.
+    /// Whether the body is a clump of spheres.
     pub fn has_spheres(&self) -> bool {
         matches!(self.surface, Surface::Spheres { .. })
     }
 
-    /// No particle is farther from the centre of mass than this (m), whatever rounding does.
-    pub fn bounding_radius(&self) -> f64 {
+    /// The bounding radius of the particles about the centre of mass (m), with a margin for rounding.
+    pub fn reach(&self) -> f64 {
         self.shape.radius() * (1.0 + 1e-9)
     }
 

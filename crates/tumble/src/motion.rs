@@ -1,29 +1,30 @@
-//! Bodies whose motion is given instead of found.
+//! Free and prescribed motion of bodies.
 
 use glam::DVec3;
 
-/// What moves a body.
+/// How a body moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Motion {
-    /// Forces.
+    /// By forces.
     #[default]
     Free,
-    /// Nothing but what is said here: it pushes others and nothing pushes it.
+    /// By a prescribed motion: it acts on other bodies, but no force acts on it.
     Prescribed(Prescribed),
 }
 
-/// A motion that is given: the body keeps the velocity and the angular velocity that it starts with,
-/// about its centre of mass. With neither it is an obstacle that stands still.
+/// A prescribed motion: the body keeps its initial velocity and angular velocity about its centre of mass.
+///
+/// With both zero it is a static obstacle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Prescribed {
-    /// A swing on top of that.
+    /// An oscillation added to the uniform motion.
     pub oscillation: Option<Oscillation>,
-    /// Velocity of the surface along itself (m/s, body axes), as a conveyor belt has: friction feels it, the body does
-    /// not move by it.
+    /// Tangential velocity of the surface (m/s, body axes), as of a conveyor belt. It affects friction but does not
+    /// move the body.
     pub surface_velocity: DVec3,
 }
 
-/// x(t) = x₀ + A (sin(2π f t + φ) − sin φ).
+/// A sinusoidal displacement: x(t) = x₀ + A (sin(2π f t + φ) − sin φ).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oscillation {
     /// Amplitude A (m), world axes.

@@ -1,13 +1,13 @@
-//! The law of contact between two bodies, from what each of them is made of.
+//! The contact law between two bodies, from the materials of both.
 
 use crate::{ContactLaw, Damping, Material, damping_ratio};
 
-/// What a body brings into its contacts with other bodies.
+/// The parameters of a body for its contacts with other bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairMaterial {
     /// Stiffness k (N/m).
     pub stiffness: f64,
-    /// The dashpot c_n (N·s/m), or the damping ratio that a restitution comes from.
+    /// Normal damping.
     pub damping: PairDamping,
     /// Coulomb coefficient μ.
     pub friction: f64,
@@ -15,24 +15,24 @@ pub struct PairMaterial {
     pub friction_spring: f64,
     /// Tangential dashpot c_t (N·s/m); `None` is √(m k_t).
     pub friction_damping: Option<f64>,
-    /// 1/M (1/kg); 0 for a body that nothing moves.
+    /// 1/M (1/kg); 0 for a body with prescribed motion.
     pub inverse_mass: f64,
-    /// How many of its particles share the mass of the body where they touch: all of them, or one where each has
-    /// a sphere of its own.
+    /// The number of particles among which the mass is divided for the contact law: all of them, or 1 for a body
+    /// of spheres.
     pub share: f64,
 }
 
-/// How a body damps its contacts with other bodies.
+/// The normal damping of contacts with other bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PairDamping {
-    /// c_n (N·s/m).
+    /// The dashpot c_n (N·s/m).
     Dashpot(f64),
-    /// ζ = c_n / (2 √(k m)).
+    /// The damping ratio ζ = c_n / (2 √(k m)).
     Ratio(f64),
 }
 
 impl PairMaterial {
-    /// From a material with every key filled in.
+    /// The parameters from a complete material.
     pub fn new(material: &Material, inverse_mass: f64, share: f64) -> Self {
         let k = material.collision_stiffness;
         Self {
@@ -49,7 +49,7 @@ impl PairMaterial {
         }
     }
 
-    /// Whether a force depends on velocity.
+    /// Whether any force depends on velocity.
     pub fn is_damped(&self) -> bool {
         let normal = match self.damping {
             PairDamping::Dashpot(c) | PairDamping::Ratio(c) => c > 0.0,
@@ -57,13 +57,13 @@ impl PairMaterial {
         normal || (self.friction > 0.0 && self.friction_damping != Some(0.0))
     }
 
-    /// The law where a particle of this body touches the `other`.
+    /// The contact law of a particle of this body against the `other` body.
     ///
-    /// Stiffnesses are harmonic means (two springs in series, each half as long), coefficients of friction are
-    /// geometric means (nothing sticks to what is frictionless), dashpots arithmetic means, those that
-    /// come from a restitution or from m computed with the k, k_t and m of the pair. Two bodies
-    /// of one material therefore meet by its own numbers. m is what the two bodies weigh against each
-    /// other, M₁M₂/(M₁ + M₂), shared by the particles of this body.
+    /// Stiffnesses are harmonic means (two springs in series, each of half length), coefficients of friction
+    /// geometric means (zero if either is zero), and dashpots arithmetic means. Dashpots given by a restitution
+    /// or by the default √(m k_t) are computed with the k, k_t and m of the pair. Two bodies of the same material
+    /// therefore have the law of that material. m is the reduced mass M₁M₂/(M₁ + M₂) divided by the number of
+    /// particles of this body that share it.
     pub fn law(&self, other: &Self) -> ContactLaw {
         let mass = 1.0 / ((self.inverse_mass + other.inverse_mass) * self.share);
         let stiffness = harmonic_mean(self.stiffness, other.stiffness);
@@ -85,9 +85,9 @@ impl PairMaterial {
     }
 }
 
-/// 2 a b / (a + b).
+/// The harmonic mean 2 a b / (a + b).
 fn harmonic_mean(a: f64, b: f64) -> f64 {
-    // equal ones keep their bits
+    // exact for equal values
     if a == b { a } else { 2.0 * a * (b / (a + b)) }
 }
 
@@ -100,14 +100,14 @@ mod tests {
     }
 
     #[test]
-    fn two_bodies_of_one_material_meet_by_its_numbers() {
+    fn two_bodies_of_one_material_have_its_contact_law() {
         let one = material(1e6, 0.3, Damping::Restitution(0.5));
         let (a, b) = (PairMaterial::new(&one, 0.5, 1.0), PairMaterial::new(&one, 0.5, 1.0));
         assert_eq!(a.law(&b), one.law(1.0));
     }
 
     #[test]
-    fn the_order_of_two_spheres_does_not_matter() {
+    fn the_contact_law_of_two_spheres_is_symmetric() {
         let a = PairMaterial::new(&material(1e6, 0.3, Damping::Restitution(0.5)), 0.5, 1.0);
         let b = PairMaterial::new(&material(3e5, 0.7, Damping::Dashpot(12.0)), 0.1, 1.0);
         assert_eq!(a.law(&b), b.law(&a));
@@ -116,12 +116,12 @@ mod tests {
     }
 
     #[test]
-    fn nothing_sticks_to_what_is_frictionless_and_a_held_body_weighs_without_end() {
+    fn the_pair_has_no_friction_if_one_body_has_none_and_a_prescribed_body_has_infinite_mass() {
         let smooth = PairMaterial::new(&material(1e6, 0.0, Damping::Dashpot(0.0)), 0.0, 1.0);
         let rough = PairMaterial::new(&material(1e6, 2.0, Damping::Restitution(0.5)), 0.25, 10.0);
         let law = rough.law(&smooth);
         assert_eq!(law.friction, 0.0);
-        // half the dashpot of a particle of 0.4 kg: the other half has none
+        // the mean of the dashpot of a particle of 0.4 kg and zero
         let alone = material(1e6, 2.0, Damping::Restitution(0.5)).law(0.4);
         assert!((law.damping / alone.damping - 0.5).abs() < 1e-15);
     }

@@ -1,4 +1,4 @@
-//! Whether a state that comes from outside is one that a model can go on from.
+//! Checks whether a state, such as one from a checkpoint, fits a model.
 
 use crate::state::{PairOrder, pair_order};
 use crate::{BodyModel, ContactKind, FrictionSpring, Model, PairSpring, State};
@@ -6,45 +6,45 @@ use crate::{BodyModel, ContactKind, FrictionSpring, Model, PairSpring, State};
 /// Why a state does not fit a model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StateError {
-    /// It is of another number of bodies.
+    /// The numbers of bodies differ.
     BodyCount {
         /// Bodies of the model.
         model: usize,
         /// Bodies of the state.
         state: usize,
-        /// Lists of friction springs, one a body.
+        /// Lists of friction springs, one per body.
         springs: usize,
     },
     /// Its time is not that of its step.
     Time {
-        /// Time (s).
+        /// The time of the state (s).
         time: f64,
-        /// Steps times dt (s).
+        /// The number of steps times dt (s).
         expected: f64,
     },
-    /// A quantity is NaN, infinite, or an orientation without a length near 1.
+    /// A quantity is NaN or infinite, or an orientation is not normalised.
     Value {
-        /// Name of the body; empty for a sum over all of them.
+        /// Name of the body; empty for a quantity of the whole world.
         body: String,
         /// The quantity: a field of [`BodyState`](crate::BodyState),
         /// [`FrictionSpring`] or [`RunTotals`](crate::RunTotals).
         quantity: &'static str,
     },
-    /// A friction spring between bodies is of bodies, walls or particles that are not there or cannot touch so, or out of
-    /// order.
+    /// A friction spring between bodies refers to bodies, walls or particles that do not exist or cannot be in contact,
+    /// or is out of order.
     PairSpring {
         /// Index of the first body.
         first: u32,
         /// Index of the second body, or of the wall.
         second: u32,
     },
-    /// A friction spring is of a wall or a particle that is not there, or out of order.
+    /// A friction spring refers to a wall or a particle that does not exist, or is out of order.
     Spring {
         /// Name of the body.
         body: String,
-        /// Which wall.
+        /// Index of the wall.
         wall: u32,
-        /// Which particle.
+        /// Index of the particle.
         particle: u32,
     },
 }
@@ -62,14 +62,14 @@ impl std::fmt::Display for StateError {
                 write!(f, "the state's time is {time} s, but its steps take {expected} s")
             }
             Self::Value { body, quantity } if body.is_empty() => {
-                write!(f, "`{quantity}` of the state is not a possible number")
+                write!(f, "`{quantity}` of the state is not a valid number")
             }
             Self::Value { body, quantity } => {
-                write!(f, "`{quantity}` of body \"{body}\" is not a possible number")
+                write!(f, "`{quantity}` of body \"{body}\" is not a valid number")
             }
             Self::PairSpring { first, second } => write!(
                 f,
-                "bodies {first} and {second} (counted from 0) cannot have the friction spring that the state says"
+                "the state has a friction spring between bodies {first} and {second} (counted from 0) that is not possible"
             ),
             Self::Spring { body, wall, particle } => write!(
                 f,
@@ -82,10 +82,10 @@ impl std::fmt::Display for StateError {
 impl std::error::Error for StateError {}
 
 impl State {
-    /// Checks that a run of `model` could have come to this state, as far as shapes and numbers tell.
+    /// Checks that counts, indices and numbers of this state are valid for `model`.
     ///
     /// # Errors
-    /// [`StateError`] names the first thing that does not fit.
+    /// [`StateError`] describes the first mismatch.
     pub fn fits(&self, model: &Model) -> Result<(), StateError> {
         let (bodies, springs) = (self.bodies.len(), self.springs.len());
         if bodies != model.bodies.len() || springs != bodies {
@@ -109,13 +109,13 @@ impl State {
                 ("angular_momentum", state.angular_momentum.is_finite()),
                 ("energy_owed", state.energy_owed.is_finite()),
             ];
-            possible(name, &values)?;
+            check_values(name, &values)?;
         }
         for ((body, name), springs) in model.bodies.iter().zip(&model.names).zip(&self.springs) {
-            fitting_springs(body, name, springs)?;
+            check_springs(body, name, springs)?;
         }
-        fitting_pair_springs(model, &self.pair_springs)?;
-        let totals = &self.totals;
+        check_pair_springs(model, &self.pair_springs)?;
+        let tally = &self.tally;
         let values = [
             ("drag", totals.drag.is_finite()),
             ("dashpot", totals.dashpot.is_finite()),
@@ -123,19 +123,20 @@ impl State {
             ("work", totals.work.is_finite()),
             ("max_depth", totals.max_depth.is_finite()),
         ];
-        possible("", &values)
+        check_values("", &values)
     }
 }
 
-fn possible(body: &str, values: &[(&'static str, bool)]) -> Result<(), StateError> {
+/// Refuses the first quantity that is not valid; `values` are names with whether they are.
+fn check_values(body: &str, values: &[(&'static str, bool)]) -> Result<(), StateError> {
     match values.iter().find(|(_, ok)| !ok) {
         Some((quantity, _)) => Err(StateError::Value { body: body.to_owned(), quantity }),
         None => Ok(()),
     }
 }
 
-/// Springs of walls and particles that are there, each once, in order.
-fn fitting_springs(
+/// Checks that the walls and particles of springs exist, and that the springs are unique and in order.
+fn check_springs(
     body: &BodyModel,
     name: &str,
     springs: &[FrictionSpring],
@@ -143,8 +144,8 @@ fn fitting_springs(
     let (walls, particles) = (body.contacts.len(), body.shape.particles());
     let mut before = None;
     for spring in springs {
-        let there = (spring.wall as usize) < walls && (spring.particle as usize) < particles.len();
-        let key = there.then(|| (spring.wall, particles.slot_of(spring.particle)));
+        let exists = (spring.wall as usize) < walls && (spring.particle as usize) < particles.len();
+        let key = exists.then(|| (spring.wall, particles.slot_of(spring.particle)));
         if key.is_none() || before >= key {
             return Err(StateError::Spring {
                 body: name.to_owned(),
@@ -154,14 +155,14 @@ fn fitting_springs(
         }
         let springs =
             [("anchor", spring.anchor.is_finite()), ("stretch", spring.stretch.is_finite())];
-        possible(name, &springs)?;
+        check_values(name, &springs)?;
         before = key;
     }
     Ok(())
 }
 
-/// Springs between bodies that are there and can touch so, each once, in order.
-fn fitting_pair_springs(model: &Model, springs: &[PairSpring]) -> Result<(), StateError> {
+/// Checks that the contacts of springs between bodies are possible, and that the springs are unique and in order.
+fn check_pair_springs(model: &Model, springs: &[PairSpring]) -> Result<(), StateError> {
     let mut before = None;
     for spring in springs {
         let key = pair_key(model, spring);
@@ -173,7 +174,7 @@ fn fitting_pair_springs(model: &Model, springs: &[PairSpring]) -> Result<(), Sta
     Ok(())
 }
 
-/// By what springs between bodies are sorted; `None` for one that cannot be.
+/// The sort key of a spring between bodies; `None` if its contact is not possible.
 fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)> {
     let PairSpring { first, second, kind, particle, other, .. } = *spring;
     let body = |index: u32| model.bodies.get(index as usize);
@@ -182,11 +183,12 @@ fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)>
         ((particle as usize) < particles.len()).then(|| particles.slot_of(particle))
     };
     let a = body(first)?;
-    let is_other = kind == ContactKind::SphereSphere || other == 0;
+    let has_valid_other = kind == ContactKind::Spheres || other == 0;
     let (particle, other) = match kind {
-        ContactKind::SphereWall => {
-            let there = a.has_spheres() && a.is_free() && (second as usize) < a.contacts.len();
-            (slot(first, particle).filter(|_| there)?, 0)
+        ContactKind::Wall => {
+            let is_possible =
+                a.has_spheres() && a.is_free() && (second as usize) < a.contacts.len();
+            (slot(first, particle).filter(|_| is_possible)?, 0)
         }
         _ => {
             let b = body(second).filter(|_| first < second)?;
@@ -200,5 +202,5 @@ fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)>
             }
         }
     };
-    is_other.then_some((pair_order(first, second, kind), particle, other))
+    has_valid_other.then_some((pair_order(first, second, kind), particle, other))
 }

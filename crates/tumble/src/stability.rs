@@ -1,33 +1,36 @@
-//! How long a step may be.
+//! The largest stable time step.
 
 use glam::DMat3;
 
 use crate::shape::diagonalise;
 use crate::{BodyModel, ContactLaw, Model, Surface, WallPlane};
 
-/// The longest stable step, and the body that sets it.
+/// The largest stable time step, and the body that determines it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CriticalStep {
-    /// Step h (s) above which contact is unstable.
+    /// The step h (s) above which contact is unstable.
     pub dt: f64,
-    /// Name of the body with the fastest contact.
+    /// The name of the body with the stiffest contact for its mass.
     pub body: String,
 }
 
-/// As many neighbours as twice this may stiffen the place of a ball: in a close packing, where neighbours move against each other, ω² = 8 k/M.
-const CLOSE: f64 = 4.0;
+/// Half the effective number of neighbours of a sphere in a close packing: when neighbours move in opposite
+/// directions, ω² = 8 k/M.
+const CLOSE_PACKING: f64 = 4.0;
 
-/// The longest step with which contact is stable; `None` where nothing can touch.
+/// The largest time step for which contact is stable; `None` if no contact is possible.
 ///
-/// A particle of mass m on a spring k oscillates at ω = √(k/m), and a step above 2/ω makes it grow. With a
-/// dashpot of damping ratio ζ the bound is (2/ω)(√(1 + ζ²) − ζ). However many particles of a body are in
-/// contact, its stiffness over its mass is no more than that of one of them, and so is its rotational
-/// stiffness over its inertia; with mass spread otherwise the largest ratio over all motions takes the place
-/// of 1/m. So it does where particles are weighted by their areas, with the weights counted: the ratio of
-/// translation is still k/m of the mean particle, that of rotation may be more. Friction turns spheres: of N spheres of radius r its springs and
-/// dashpots count N r²/I on top of N/M, I the smallest moment. Where bodies meet each other, two of a
-/// kind count, with all their particles, and spheres with at least the neighbours of a close packing. Walls that meet in a corner add up; of
-/// two that face each other the stiffer counts.
+/// A particle of mass m on a spring k oscillates at ω = √(k/m), and is unstable for steps above 2/ω. With a
+/// dashpot of damping ratio ζ the limit is (2/ω)(√(1 + ζ²) − ζ). However many particles of a body are in
+/// contact, the ratio of stiffness to mass is at most that of one particle, and so is the ratio of rotational
+/// stiffness to inertia. If the mass is distributed otherwise, the largest ratio over all motions replaces 1/m.
+/// The same holds for particles with area weights: the ratio for translation is k/m of the mean particle, that
+/// for rotation may be larger.
+///
+/// Friction acts on the rotation of spheres: for N spheres of radius r its springs and dashpots contribute
+/// N r²/I in addition to N/M, with I the smallest moment. Contact between bodies is estimated for two identical
+/// bodies with all particles in contact, and for spheres with at least the neighbours of a close packing. The
+/// contributions of walls that meet in a corner add up; of two opposite walls the stiffer counts.
 pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
     let free = model.bodies.iter().zip(&model.names).filter(|(body, _)| body.is_free());
     let steps = free.map(|(body, name)| (critical_dt_of(model, body), name));
@@ -44,8 +47,8 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
     let (lever, neighbours) = match body.surface {
         Surface::Spheres { radius } => {
             let count = body.shape.moments().count;
-            let rim = count * radius * radius * body.inverse_moments.max_element();
-            (1.0 + rim / per_mass, (CLOSE / count).max(1.0))
+            let rotational = count * radius * radius * body.inverse_moments.max_element();
+            (1.0 + rotational / per_mass, (CLOSE_PACKING / count).max(1.0))
         }
         _ => (1.0, 1.0),
     };
@@ -60,18 +63,18 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
     let at_walls = |terms: &dyn Fn(&ContactLaw) -> [f64; 2]| {
         per_mass * stiffest(&model.walls, &body.contacts, terms)
     };
-    // two bodies alike, all particles of both in contact
+    // two identical bodies with all particles in contact
     let law = body.pair_material.law(&body.pair_material);
     let meets = if model.has_body_contact { 2.0 * per_mass * neighbours } else { 0.0 };
     let between = |[normal, tangential]: [f64; 2]| meets * normal.max(tangential);
     let square = at_walls(&springs).max(between(springs(&law)));
     let half_rate = 0.5 * at_walls(&dashpots).max(between(dashpots(&law)));
-    // (2/ω)(√(1 + ζ²) − ζ), without cancellation and for ω = 0 too
+    // (2/ω)(√(1 + ζ²) − ζ), without cancellation and valid for ω = 0
     2.0 / ((square + half_rate * half_rate).sqrt() + half_rate)
 }
 
-/// The largest eigenvalue of Σ (normal n nᵀ + tangential (1 − n nᵀ)) over walls that can be
-/// touched at once; `terms` are both.
+/// The largest eigenvalue of Σ (a n nᵀ + b (1 − n nᵀ)) over walls that can be in contact at once; `terms`
+/// returns the normal coefficient a and the tangential coefficient b.
 fn stiffest(
     walls: &[WallPlane],
     laws: &[ContactLaw],
@@ -81,7 +84,7 @@ fn stiffest(
     let mut paired = vec![false; walls.len()];
     for (i, (wall, law)) in walls.iter().zip(laws).enumerate() {
         let [mut along, mut across] = terms(law);
-        // of two walls that face each other, the later one counts for what it has more
+        // of two opposite walls, the later one adds only its excess over the other
         let facing = (0..i).find(|&j| !paired[j] && walls[j].normal.dot(wall.normal) < -1.0 + 1e-9);
         if let Some(j) = facing {
             (paired[i], paired[j]) = (true, true);
@@ -104,7 +107,7 @@ mod tests {
     use super::*;
     use crate::{Body, DVec3, Damping, Material, Shape, World, WorldBuilder};
 
-    /// A solid ball of radius 1 m and mass 1 kg.
+    /// A solid sphere of radius 1 m and mass 1 kg.
     fn ball(at: DVec3) -> Body {
         let inertia = DMat3::IDENTITY * 0.4;
         let mesh = crate::Mesh::default();
@@ -112,7 +115,7 @@ mod tests {
         Body::new(shape).mass(1.0).surface(Surface::Spheres { radius: 1.0 }).position(at)
     }
 
-    /// A floor, its friction springs as stiff as the normal ones, 100 N/m.
+    /// A floor with friction springs as stiff as the normal springs, 100 N/m.
     fn world(dt: f64) -> WorldBuilder {
         let material = Material {
             collision_stiffness: 100.0,
@@ -127,28 +130,28 @@ mod tests {
         world.wall(floor).force(true)
     }
 
-    /// Largest spin of a ball that rests on the floor and is given a small one.
-    fn spin(dt: f64) -> f64 {
+    /// The largest angular velocity of a sphere that rests on the floor, after a small perturbation.
+    fn largest_spin(dt: f64) -> f64 {
         let ball = ball(DVec3::Y * 0.95).angular_velocity(DVec3::X * 1e-3);
         let mut world = world(dt).body(ball).build().unwrap();
-        let mut most = 0.0f64;
+        let mut largest = 0.0f64;
         for _ in 0..60 {
             world.step().unwrap();
-            most = most.max(world.body(0).angular_velocity().length());
+            largest = largest.max(world.body(0).angular_velocity().length());
         }
-        most
+        largest
     }
 
     #[test]
-    fn friction_turns_balls_faster_than_springs_push_them() {
+    fn the_critical_step_of_spheres_is_that_of_rotation_by_friction() {
         // k_t (1/M + r²/I) on the floor, and eight times as much in a close packing
         let rate = 350.0f64;
         let found = critical_dt(world(1e-3).body(ball(DVec3::Y * 5.0)).build().unwrap().model());
         let dt = found.unwrap().dt;
         assert!((dt * (8.0 * rate).sqrt() - 2.0).abs() < 1e-12, "{dt}");
-        // the slip oscillates with steps up to 2/ω and grows with longer ones
+        // the spin oscillates for steps up to 2/ω and grows for larger ones
         let critical = 2.0 / rate.sqrt();
-        let (below, above) = (spin(0.95 * critical), spin(1.05 * critical));
+        let (below, above) = (largest_spin(0.95 * critical), largest_spin(1.05 * critical));
         assert!(below < 1e-2 && above > 1e-1, "{below} {above}");
     }
 }

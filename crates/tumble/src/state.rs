@@ -1,24 +1,23 @@
-//! All that evolves, and nothing else: a checkpoint is a `State`.
+//! The state: everything that evolves during a run.
 
 use glam::{DQuat, DVec3};
 
-/// The state of a run. With the [`Model`](crate::Model) it determines everything that follows.
+/// The state of a run. Together with the [`Model`](crate::Model) it determines the future; a checkpoint holds it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
-    /// How many steps have been taken.
+    /// The number of steps taken.
     pub step: u64,
     /// Time t (s).
     pub time: f64,
-    /// One entry a body.
+    /// One entry per body.
     pub bodies: Vec<BodyState>,
-    /// The friction springs of each body, sorted by wall, those of a wall in the order in which the shape
-    /// keeps its particles.
+    /// The friction springs of each body, sorted by wall and then by the slot of the particle in the shape.
     pub springs: Vec<Vec<FrictionSpring>>,
-    /// The friction springs between bodies, and between spheres and walls, in their order
-    /// ([`PairSpring`]).
+    /// The friction springs between bodies, and between spheres and walls, in the order described at
+    /// [`PairSpring`].
     pub pair_springs: Vec<PairSpring>,
-    /// What the run has lost or met so far.
-    pub totals: RunTotals,
+    /// Accumulated losses and extremes.
+    pub tally: Tally,
 }
 
 /// The state of one body.
@@ -28,15 +27,15 @@ pub struct BodyState {
     pub position: DVec3,
     /// Velocity v of the centre of mass (m/s).
     pub velocity: DVec3,
-    /// Orientation q, a unit quaternion that turns body axes into world axes.
+    /// Orientation q, a unit quaternion that rotates body axes to world axes.
     pub orientation: DQuat,
-    /// What rounding has taken from q so far, to be given back: it keeps a million small turns as
-    /// exact as one (compensated summation, W. Kahan, Comm. ACM 8 (1965) 40).
+    /// Compensation for the rounding error of q, so that a million small rotations are as accurate as one
+    /// (compensated summation, W. Kahan, Comm. ACM 8 (1965) 40).
     pub orientation_rest: DQuat,
     /// Angular momentum L about the centre of mass, world axes (kg·m²/s).
     pub angular_momentum: DVec3,
-    /// Energy (J) that refined steps in contact have gained by error and not yet been able to give
-    /// back; 0 without `energy_tolerance`.
+    /// Energy (J) gained by the error of refined steps in contact and not yet removed; 0 without
+    /// `energy_tolerance`.
     pub energy_owed: f64,
 }
 
@@ -54,64 +53,64 @@ impl Default for BodyState {
     }
 }
 
-/// Nothing to be given back.
+/// No compensation.
 pub(crate) const NO_REST: DQuat = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
 
 /// The tangential spring of one particle in contact with one wall.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrictionSpring {
-    /// Which wall, as an index into [`Model::walls`](crate::Model::walls).
+    /// The index of the wall in [`Model::walls`](crate::Model::walls).
     pub wall: u32,
-    /// Which particle of the body.
+    /// The index of the particle.
     pub particle: u32,
-    /// Where on the wall the spring is held (m): where the particle arrived, or has slipped to.
-    /// Only its part along the wall counts.
+    /// The anchor of the spring on the wall (m): the point of first contact, moved by slip. Only its components
+    /// along the wall count.
     pub anchor: DVec3,
-    /// Its stretch at the latest kick (m), along the wall, from the anchor to the particle.
+    /// The elongation at the latest kick (m), along the wall, from the anchor to the particle.
     pub stretch: DVec3,
 }
 
 /// The tangential spring of one contact between two bodies, or between a sphere of a body and a wall.
 ///
-/// They are sorted by the first body, its walls before the other bodies, the second body, the kind, the particle and the
-/// other particle, particles in the order in which the shape keeps them.
+/// Springs are sorted by the first body, walls before other bodies, the second body or wall, the kind, and the slots of
+/// both particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairSpring {
-    /// Which body; of two the one with the lower index.
+    /// The index of the first body; of two bodies the lower one.
     pub first: u32,
-    /// Which other body, or which wall.
+    /// The index of the other body, or of the wall.
     pub second: u32,
-    /// What touches what.
+    /// The kind of contact.
     pub kind: ContactKind,
-    /// Which particle touches: of `second` where the kind is [`ContactKind::MeshPoint`], else of `first`.
+    /// The index of the particle, of `second` for [`ContactKind::SecondInFirst`], else of `first`.
     pub particle: u32,
-    /// Which particle of `second` it touches, where the kind is [`ContactKind::SphereSphere`]; else 0.
+    /// The index of the particle of `second` for [`ContactKind::Spheres`], else 0.
     pub other: u32,
-    /// Its stretch at the latest kick (m), along the contact, world axes: how far the first body has come with respect to
+    /// The elongation at the latest kick (m), tangential, world axes: the displacement of the first body relative to
     /// the second.
     pub stretch: DVec3,
 }
 
-/// By what pairs are sorted: the first body, its walls before the other bodies, the second body, the kind.
+/// The sort key of a pair: the first body, walls before other bodies, the second body or wall, the kind.
 pub(crate) type PairOrder = (u32, bool, u32, ContactKind);
 
-/// The place of a pair among all pairs.
+/// The sort key of a pair.
 pub(crate) fn pair_order(first: u32, second: u32, kind: ContactKind) -> PairOrder {
     (first, kind != ContactKind::SphereWall, second, kind)
 }
 
-/// What touches what.
+/// The kind of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum ContactKind {
-    /// A sphere of the first body and a wall.
-    SphereWall,
-    /// A sphere or particle of the first body and one of the second.
-    SphereSphere,
-    /// A sphere or particle of the first body and the mesh of the second.
-    PointMesh,
-    /// The mesh of the first body and a sphere or particle of the second.
-    MeshPoint,
+    /// A sphere of the first body against a wall.
+    Wall,
+    /// A sphere or particle of the first body against one of the second.
+    Spheres,
+    /// A sphere or particle of the first body against the mesh of the second.
+    FirstInSecond,
+    /// A sphere or particle of the second body against the mesh of the first.
+    SecondInFirst,
 }
 
 /// Sums and extremes over the steps taken so far.
@@ -121,18 +120,18 @@ pub struct RunTotals {
     pub drag: f64,
     /// Energy lost to the dashpots of contacts (J).
     pub dashpot: f64,
-    /// Energy lost to slip against friction (J).
+    /// Energy lost to frictional slip (J).
     pub slip: f64,
-    /// Work that bodies whose motion is prescribed have done on the others (J).
+    /// Work done by bodies with prescribed motion on other bodies (J).
     pub work: f64,
-    /// Deepest contact met so far (m).
+    /// The largest penetration depth so far (m).
     pub max_depth: f64,
-    /// How often contact forces kicked a body: what contact has cost.
+    /// The number of kicks by contact forces, a measure of the cost of contact.
     pub evaluations: u64,
 }
 
-impl RunTotals {
-    /// Everything that was lost (J).
+impl Tally {
+    /// The sum of all losses (J).
     pub fn lost(&self) -> f64 {
         self.drag + self.dashpot + self.slip
     }

@@ -1,42 +1,42 @@
-//! What other bodies meet of a body.
+//! Surfaces for contact between bodies.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::{BuildError, Shape, SignedDistance, SurfaceError};
 
-/// How a body meets other bodies. Walls meet its particles whatever this says.
+/// The collision surface of a body for contact with other bodies. Walls always act on its particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Surface {
-    /// Nothing meets it but the surfaces of others, and those its particles.
+    /// No surface: its particles collide with the surfaces of other bodies.
     #[default]
     None,
-    /// Its closed mesh: particles and spheres of others are pushed out of it.
+    /// The closed mesh of the body: particles and spheres of other bodies are pushed out of it.
     Mesh,
-    /// A sphere about each of its particles.
+    /// A sphere at each particle: a clump.
     Spheres {
         /// Radius of each sphere (m), above 0.
         radius: f64,
     },
 }
 
-/// What is done about bodies that start in each other.
+/// The treatment of bodies that overlap initially.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overlaps {
-    /// They are refused, by name.
+    /// They are refused with an error.
     #[default]
     Refuse,
-    /// They are moved apart before the first step, without turning or kicking them.
+    /// They are translated apart before the first step; orientations and velocities do not change.
     Push,
 }
 
-/// The distances to meshes, made once for all bodies of one shape.
+/// Signed distances to meshes, one per shape, by the address of the shape.
 #[derive(Debug, Default)]
 pub(crate) struct Solids(BTreeMap<*const Shape, Result<Arc<SignedDistance>, SurfaceError>>);
 
 impl Solids {
-    /// The distance to the mesh of a body, if that is its surface.
-    pub fn of(
+    /// The signed distance to the mesh of a body, if that is its surface.
+    pub fn get(
         &mut self,
         body: &str,
         shape: &Arc<Shape>,

@@ -1,4 +1,4 @@
-//! Walls: planes, and the box that is made of them.
+//! Walls: planes and boxes of planes.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -12,10 +12,12 @@ pub struct WallPlane {
 }
 
 impl WallPlane {
-    /// The plane {x : normal·x = offset}, solid where normal·x < offset. `normal` need not be of
-    /// unit length: both are divided by it. `None` if that is impossible (zero or not finite).
+    /// The plane {x : normal·x = offset}, solid where normal·x < offset.
+    ///
+    /// `normal` need not be normalised: both arguments are divided by its length. `None` if it is zero or not
+    /// finite.
     pub fn new(normal: DVec3, offset: f64) -> Option<Self> {
-        // scaled by the largest component first: 1e-200 and 1e200 are as good as 1
+        // scaled by the largest component first, to avoid overflow and underflow
         let largest = normal.abs().max_element();
         if !(largest > 0.0 && largest.is_finite()) {
             return None;
@@ -32,16 +34,16 @@ impl WallPlane {
     }
 }
 
-/// A box of up to six walls, seen from inside.
+/// A box of up to six walls that face inwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallBox {
     /// Lowest corner, in the box's own axes (m).
     pub min: DVec3,
     /// Highest corner, in the box's own axes (m).
     pub max: DVec3,
-    /// Turns the box's own axes, about the origin, into the world's.
+    /// The rotation about the origin from the box's own axes to world axes.
     pub orientation: DQuat,
-    /// Which faces are missing, in the order −x, +x, −y, +y, −z, +z.
+    /// Whether a face is missing, in the order −x, +x, −y, +y, −z, +z.
     pub open: [bool; 6],
 }
 
@@ -59,7 +61,7 @@ impl WallBox {
         }
     }
 
-    /// The walls that are there, in the order of [`WallBox::open`].
+    /// The walls of the box, in the order of [`WallBox::open`].
     pub fn planes(&self) -> Vec<WallPlane> {
         let turn = DMat3::from_quat(self.orientation);
         (0..6)
@@ -83,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_arena_is_a_floor_and_four_sides() {
+    fn the_arena_has_a_floor_and_four_sides() {
         let planes = WallBox::arena().planes();
         assert_eq!(planes.len(), 5);
         let inside = DVec3::new(0.2, 40.0, -0.3);
@@ -94,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_normal_of_any_length_is_the_same_plane() {
+    fn the_length_of_the_normal_does_not_matter() {
         for length in [1e-200, 0.5, 3.0, 1e200] {
             let plane = WallPlane::new(DVec3::new(0.0, 3.0, 4.0) * length, 5.0 * length).unwrap();
             assert!((plane.normal - DVec3::new(0.0, 0.6, 0.8)).length() < 1e-15);

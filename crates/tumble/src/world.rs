@@ -1,4 +1,4 @@
-//! What a user holds: build, step, read.
+//! The simulated world: a model, its state, and the means to advance it.
 
 use std::sync::Arc;
 
@@ -6,72 +6,70 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::stage::{self, MouseSpring};
 use crate::{
-    BodyForces, BodyModel, BodyState, ContactDepths, Energy, Model, Scratch, State, StateError,
-    StepError, WorldBuilder, Wrench, step::step,
+    BodyForces, BodyModel, BodyState, Depths, Energy, Model, Scratch, State, StateError, StepError,
+    Wrench, step::step,
 };
 
-/// A model and its state, and the means to advance it.
+/// A simulation: a model and its state, advanced step by step.
 #[derive(Clone, Debug)]
 pub struct World {
     model: Model,
     state: State,
     scratch: Scratch,
-    /// A hand on a particle; not part of the state, since nothing in the world says where it goes.
-    mouse_spring: Option<MouseSpring>,
-    mouse_work: f64,
+    /// The mouse spring. It is an external input and not part of the state.
+    pull: Option<Pull>,
+    /// The work of the mouse spring (J).
+    pulled: f64,
 }
 
 impl World {
-    /// Starts the description of a world.
-    pub fn builder() -> WorldBuilder {
-        WorldBuilder::default()
-    }
-
-    pub(crate) fn of(model: Model, state: State) -> Self {
-        Self { model, state, scratch: Scratch::default(), mouse_spring: None, mouse_work: 0.0 }
+    pub(crate) fn new(model: Model, state: State) -> Self {
+        Self { model, state, scratch: Scratch::default(), pull: None, pulled: 0.0 }
     }
 
     /// Advances time by one step of [`World::dt`].
     ///
     /// # Errors
-    /// [`StepError`] when the new state cannot be trusted; the world then keeps it, for inspection.
+    /// [`StepError`] if the new state is not valid. The world keeps that state for inspection.
     pub fn step(&mut self) -> Result<(), StepError> {
-        let Some(hand) = self.mouse_spring else {
+        let Some(pull) = self.pull else {
             return step(&self.model, &mut self.state, &mut self.scratch);
         };
-        // half of the pull before and half after
+        // half of the impulse before the step and half after
         let h = 0.5 * self.model.dt;
-        self.mouse_work += stage::apply_mouse_spring(&self.model, &mut self.state, &hand, h);
+        self.pulled += stage::pull(&self.model, &mut self.state, &pull, h);
         step(&self.model, &mut self.state, &mut self.scratch)?;
-        self.mouse_work += stage::apply_mouse_spring(&self.model, &mut self.state, &hand, h);
+        self.pulled += stage::pull(&self.model, &mut self.state, &pull, h);
         Ok(())
     }
 
-    /// Pulls a particle towards a place from the next step on, or lets go. Returns whether there is such a
-    /// particle of a body that can be moved, and such a place; if not, nothing changes.
-    pub fn set_mouse_spring(&mut self, hand: Option<MouseSpring>) -> bool {
-        let fits = hand.is_none_or(|MouseSpring { body, particle, target }| {
+    /// Attaches a mouse spring from the next step on, or removes it with `None`.
+    ///
+    /// Returns false, and changes nothing, if the body does not exist or is not free, the particle does not exist,
+    /// or the target is not finite.
+    pub fn pull(&mut self, pull: Option<Pull>) -> bool {
+        let is_valid = pull.is_none_or(|Pull { body, particle, target }| {
             let body = self.model.bodies.get(body);
-            let there =
+            let has_particle =
                 |body: &Arc<BodyModel>| body.is_free() && particle < body.shape.particles().len();
-            body.is_some_and(there) && target.is_finite()
+            body.is_some_and(has_particle) && target.is_finite()
         });
-        if fits {
-            self.mouse_spring = hand;
+        if is_valid {
+            self.pull = pull;
         }
-        fits
+        is_valid
     }
 
-    /// The work of all pulls so far (J): what [`World::energy`] has gained by them.
-    pub fn mouse_work(&self) -> f64 {
-        self.mouse_work
+    /// The total work of the mouse spring (J), which [`World::energy`] has gained.
+    pub fn pulled(&self) -> f64 {
+        self.pulled
     }
 
-    /// Goes on from `state`, as a checkpoint holds it: every step from here on gives the bits that it
-    /// gave when the state was taken. A hand lets go, and [`World::mouse_work`] begins anew.
+    /// Replaces the state, for example by one from a checkpoint. Later steps are the same, bit for bit, as in the
+    /// run from which the state was taken. The mouse spring is removed, and [`World::pulled`] is reset to zero.
     ///
     /// # Errors
-    /// [`StateError`] when the state is not one of this model; the world then keeps its own.
+    /// [`StateError`] if the state does not fit the model. The world then keeps its own state.
     pub fn restore(&mut self, state: State) -> Result<(), StateError> {
         state.fits(&self.model)?;
         (self.state, self.scratch) = (state, Scratch::default());
@@ -79,7 +77,7 @@ impl World {
         Ok(())
     }
 
-    /// Drops everything that the next step would compute anew. No result changes.
+    /// Drops all cached data. No result changes.
     pub fn forget_scratch(&mut self) {
         self.scratch = Scratch::default();
     }
@@ -94,25 +92,25 @@ impl World {
         self.model.dt
     }
 
-    /// What stays the same during the run.
+    /// The model: everything that is constant during the run.
     pub fn model(&self) -> &Model {
         &self.model
     }
 
-    /// All that evolves.
+    /// The state: everything that evolves.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// How many bodies there are.
+    /// The number of bodies.
     pub fn body_count(&self) -> usize {
         self.model.bodies.len()
     }
 
-    /// One body, in the order in which they were added.
+    /// One body, by its index in the order in which bodies were added.
     ///
     /// # Panics
-    /// When `index` is not below [`World::body_count`].
+    /// If `index` is not below [`World::body_count`].
     pub fn body(&self, index: usize) -> BodyView<'_> {
         BodyView {
             name: &self.model.names[index],
@@ -126,18 +124,18 @@ impl World {
         (0..self.body_count()).map(|index| self.body(index))
     }
 
-    /// What walls and other bodies did to one body in the latest step, by spring, dashpot and friction together.
-    /// Zero before the first step, and for a body that touched nothing.
+    /// The total contact wrench on one body in the latest step: springs, dashpots and friction of contacts with walls
+    /// and other bodies. Zero before the first step and without contact.
     pub fn contact_wrench(&self, index: usize) -> Wrench {
         self.scratch.forces.get(index).map_or_else(Wrench::default, BodyForces::contact)
     }
 
-    /// How deep bodies are in each other and behind walls now.
-    pub fn contact_depths(&self) -> ContactDepths {
-        ContactDepths::with(&self.model, &self.state, self.scratch.body_contacts.for_query())
+    /// The largest penetration depths now.
+    pub fn depths(&self) -> Depths {
+        Depths::with(&self.model, &self.state, self.scratch.meeting.for_a_look())
     }
 
-    /// Where the energy is, or went.
+    /// The energy ledger now.
     pub fn energy(&self) -> Energy {
         Energy::with(&self.model, &self.state, self.scratch.body_contacts.for_query())
     }
@@ -152,12 +150,12 @@ pub struct BodyView<'a> {
 }
 
 impl<'a> BodyView<'a> {
-    /// Its name.
+    /// The name.
     pub fn name(&self) -> &'a str {
         self.name
     }
 
-    /// Its mass, inertia, shape: all that is constant.
+    /// The constant data: mass, inertia, shape and so on.
     pub fn model(&self) -> &'a BodyModel {
         self.model
     }
@@ -172,7 +170,7 @@ impl<'a> BodyView<'a> {
         self.state.velocity
     }
 
-    /// Orientation q, body axes to world axes.
+    /// Orientation q, from body axes to world axes.
     pub fn orientation(&self) -> DQuat {
         self.state.orientation
     }
@@ -188,15 +186,15 @@ impl<'a> BodyView<'a> {
         self.model.angular_velocity(rotation, self.state.angular_momentum)
     }
 
-    /// How many particles it has.
+    /// The number of particles.
     pub fn particle_count(&self) -> usize {
         self.model.shape.particles().len()
     }
 
-    /// Place (m) and velocity (m/s) of one particle, world axes.
+    /// Position (m) and velocity (m/s) of one particle, world axes.
     ///
     /// # Panics
-    /// When `index` is not below [`BodyView::particle_count`].
+    /// If `index` is not below [`BodyView::particle_count`].
     pub fn particle(&self, index: usize) -> (DVec3, DVec3) {
         self.model.particle(self.state, index)
     }

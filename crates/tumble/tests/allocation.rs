@@ -1,9 +1,9 @@
-//! Stepping allocates nothing, once the lists of contacts have found their size.
+//! Steps do not allocate once the contact lists have reached their size.
 #![allow(clippy::unwrap_used)]
 
 use tumble::{Body, DVec3, Damping, Material, Primitive, Shape, WallBox, World};
 
-/// A ball of 2,562 particles pressed into a corner of the arena, spinning.
+/// A spinning sphere of 2,562 particles pressed into a corner of the arena.
 fn heavy_contact(friction: f64, energy_tolerance: Option<f64>) -> World {
     let mesh = Primitive::Sphere { radius: 0.3, subdivisions: 4 }.mesh().unwrap();
     let shape = Shape::with_surface(&mesh.vertices, mesh.clone()).unwrap();
@@ -43,13 +43,13 @@ fn allocations_of_a_thousand_steps(mut world: World) -> u64 {
 }
 
 #[test]
-fn a_thousand_steps_in_heavy_contact_allocate_nothing() {
+fn steps_in_heavy_contact_do_not_allocate() {
     for friction in [0.0, 0.5] {
         assert_eq!(allocations_of_a_thousand_steps(heavy_contact(friction, None)), 0);
     }
 }
 
 #[test]
-fn refined_steps_allocate_nothing_either() {
+fn refined_steps_do_not_allocate() {
     assert_eq!(allocations_of_a_thousand_steps(heavy_contact(0.5, Some(1e-4))), 0);
 }

@@ -1,4 +1,4 @@
-//! Exact flight, for bodies of every kind: it composes, conserves, and agrees with the textbook.
+//! Properties of exact free flight: composition, conservation, and agreement with closed formulas.
 #![allow(clippy::unwrap_used)]
 
 use proptest::prelude::*;
@@ -56,8 +56,8 @@ fn angle(a: DQuat, b: DQuat) -> f64 {
     2.0 * apart.length()
 }
 
-/// Length, however small: squares underflow first.
-fn long(v: DVec3) -> f64 {
+/// The length of a vector, without underflow of the squares.
+fn length_of(v: DVec3) -> f64 {
     let largest = v.abs().max_element();
     if largest == 0.0 { 0.0 } else { (v / largest).length() * largest }
 }
@@ -143,7 +143,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn one_flight_is_many_short_ones(
+    fn one_flight_equals_many_short_ones(
         moments in moments(),
         axis in direction(),
         speed in log_uniform(1e-6, 1e4),
@@ -164,11 +164,11 @@ proptest! {
 
         let rate = drag / world.model().bodies[0].particle_mass();
         let left = (-rate * time).exp();
-        let length = long(start.angular_momentum);
+        let length = length_of(start.angular_momentum);
         for end in [&once, &often] {
             let unit = (end.orientation.length() - 1.0).abs();
             prop_assert!(unit < 3e-16, "orientation of length 1 + {unit:e}");
-            let decayed = (long(end.angular_momentum) - length * left).abs();
+            let decayed = (length_of(end.angular_momentum) - length * left).abs();
             let bound = 1e-15 * (f64::from(parts) + rate * time);
             prop_assert!(decayed <= bound * length * left + 1e-300, "decay off by {decayed:e}");
             let (now, before) = (rotational_energy(&world, end), rotational_energy(&world, &start));
@@ -182,7 +182,7 @@ proptest! {
     }
 
     #[test]
-    fn a_symmetric_top_precesses_as_in_the_textbook(
+    fn a_symmetric_top_precesses_regularly(
         axial in prop_oneof![0.05..1.99f64, 0.999_999..1.000_001f64],
         scale in log_uniform(1e-3, 1e3),
         axis in direction(),
@@ -204,7 +204,7 @@ proptest! {
     }
 
     #[test]
-    fn what_does_not_spin_keeps_its_orientation(
+    fn a_body_without_spin_keeps_its_orientation(
         moments in moments(),
         drag in prop_oneof![Just(0.0), log_uniform(1e-3, 1e4)],
         time in log_uniform(1e-4, 1e6),
@@ -248,7 +248,7 @@ proptest! {
     }
 
     #[test]
-    fn a_million_turns_in_one_flight(
+    fn a_flight_of_a_million_revolutions_is_accurate(
         moments in moments().prop_filter("it turns", |m| m.min_element() > 0.0),
         axis in direction(),
         speed in log_uniform(1e-6, 1e4),
@@ -265,7 +265,7 @@ proptest! {
     }
 
     #[test]
-    fn heavy_drag_on_a_solid_only_slows_it(
+    fn drag_on_a_solid_never_adds_energy(
         moments in moments(),
         axis in direction(),
         speed in log_uniform(1e-3, 1e4),
@@ -289,10 +289,9 @@ proptest! {
     }
 }
 
-/// A body that turned evenly, about a principal axis, took a piece for each quarter radian: this one
-/// took longer than the age of the universe.
+/// Regression: rotation about a principal axis must not be divided into substeps, whatever the angle.
 #[test]
-fn even_spin_was_cut_into_pieces() {
+fn uniform_rotation_takes_one_step() {
     for (moments, axis) in [
         (DVec3::new(1.0, 2.0, 3.0), DVec3::Y),
         (DVec3::new(0.0, 1.0, 1.0), DVec3::new(0.0, 0.6, 0.8)),

@@ -1,4 +1,4 @@
-//! Finely meshed bodies, not convex, in each other's way: what is remembered of their surfaces changes no bit.
+//! A heap of non-convex bodies with fine meshes: cached patches and lists do not change any bit.
 #![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use tumble::{
     World,
 };
 
-/// Eight knots in a narrow box, thrown at each other.
+/// Eight knots thrown at each other in a narrow box.
 fn heap() -> World {
     let knot = Primitive::Knot { radius: 0.06, tube_radius: 0.022, segments: 12 }.mesh().unwrap();
     let knot = Arc::new(Shape::of_mesh(&knot, Sampling::Vertices, MassModel::Solid).unwrap());
@@ -37,20 +37,20 @@ fn heap() -> World {
 }
 
 #[test]
-fn patches_and_lists_that_are_kept_change_no_bit() {
-    let mut kept = heap();
-    let mut forgetful = kept.clone();
+fn cached_patches_and_lists_do_not_change_any_bit() {
+    let mut cached = heap();
+    let mut uncached = cached.clone();
     let mut touched = 0;
     for step in 0..2000 {
-        kept.step().unwrap();
-        // also with nothing known at all
+        cached.step().unwrap();
+        // at times in every step, so that nothing is ever cached
         if step % 11 == 0 || step / 100 % 4 == 3 {
-            forgetful.forget_scratch();
+            uncached.forget_scratch();
         }
-        forgetful.step().unwrap();
-        touched += kept.state().pair_springs.len();
+        uncached.step().unwrap();
+        touched += cached.state().pair_springs.len();
         if step % 50 == 49 {
-            assert_eq!(kept.state().hash(), forgetful.state().hash(), "after step {step}");
+            assert_eq!(cached.state().hash(), uncached.state().hash(), "after step {step}");
         }
     }
     assert!(touched > 2000, "hardly a heap: {touched}");

@@ -1,4 +1,4 @@
-//! Bodies whose motion is given.
+//! Bodies with prescribed motion.
 
 #![allow(clippy::unwrap_used)]
 
@@ -9,7 +9,7 @@ use tumble::{
 };
 
 #[test]
-fn an_oscillation_swings_about_the_path_it_is_laid_over() {
+fn an_oscillation_is_added_to_the_uniform_motion() {
     let amplitude = DVec3::new(0.0, 0.003, 0.001);
     let (frequency, phase) = (15.0, 0.4);
     let swing = Oscillation { amplitude, frequency, phase };
@@ -31,9 +31,9 @@ fn an_oscillation_swings_about_the_path_it_is_laid_over() {
     }
 }
 
-/// It once fell like any other where nothing could meet it, or where steps were refined.
+/// Also without any collision surface, and with refined steps.
 #[test]
-fn what_is_held_ignores_walls_weight_and_hands_also_where_nothing_meets_it() {
+fn a_prescribed_body_ignores_walls_gravity_and_the_mouse_spring() {
     for tolerance in [None, Some(1e-6)] {
         for integrator in [Integrator::Splitting, Integrator::Euler] {
             if tolerance.is_some() && integrator == Integrator::Euler {
@@ -67,7 +67,7 @@ fn what_is_held_ignores_walls_weight_and_hands_also_where_nothing_meets_it() {
 }
 
 #[test]
-fn what_cannot_be_held_so_is_refused() {
+fn impossible_prescribed_motions_are_refused() {
     let held = |places: &[DVec3], swing: Option<Oscillation>| {
         let given = Prescribed { oscillation: swing, ..Prescribed::default() };
         let body = Body::new(Shape::of_particles(places).unwrap());

@@ -1,4 +1,4 @@
-//! A state that is put back gives the same bits, and one that does not fit is refused.
+//! Restoring a state reproduces the run bit for bit; a state that does not fit is refused.
 
 #![allow(clippy::unwrap_used)]
 
@@ -35,7 +35,7 @@ fn world(integrator: Integrator, tolerance: Option<f64>) -> World {
         .unwrap()
 }
 
-const WAYS: [(Integrator, Option<f64>); 3] =
+const INTEGRATORS: [(Integrator, Option<f64>); 3] =
     [(Integrator::Euler, None), (Integrator::Splitting, None), (Integrator::Splitting, Some(1e-6))];
 
 fn advance(world: &mut World, steps: u64) {
@@ -45,8 +45,8 @@ fn advance(world: &mut World, steps: u64) {
 }
 
 #[test]
-fn a_restored_world_goes_on_to_the_same_bits() {
-    for (integrator, tolerance) in WAYS {
+fn a_restored_world_continues_bit_for_bit() {
+    for (integrator, tolerance) in INTEGRATORS {
         let mut whole = world(integrator, tolerance);
         let mut in_contact = 0;
         for _ in 0..20 {
@@ -64,8 +64,8 @@ fn a_restored_world_goes_on_to_the_same_bits() {
 }
 
 #[test]
-fn forgetting_the_scratch_before_every_step_changes_nothing() {
-    for (integrator, tolerance) in WAYS {
+fn dropping_cached_data_before_every_step_does_not_change_any_bit() {
+    for (integrator, tolerance) in INTEGRATORS {
         let (mut kept, mut forgot) = (world(integrator, tolerance), world(integrator, tolerance));
         for _ in 0..3000 {
             kept.step().unwrap();

@@ -1,4 +1,4 @@
-//! Mass integrals and samplings of random boxes, against closed formulas.
+//! Mass integrals and samplings of random meshes, against closed formulas.
 
 use proptest::prelude::*;
 use tumble::{DMat3, DQuat, DVec3, Mesh, Primitive, Sampling};
@@ -27,7 +27,7 @@ fn largest(m: DMat3) -> f64 {
 
 proptest! {
     #[test]
-    fn a_placed_box_has_the_turned_moments(
+    fn the_moments_of_a_box_rotate_with_it(
         size in vector(0.01..10.0),
         turn in rotation(),
         shift in vector(-100.0..100.0),
@@ -55,7 +55,7 @@ proptest! {
     }
 
     #[test]
-    fn samples_of_a_placed_box_keep_to_it(
+    fn samples_of_a_box_are_on_its_surface_or_inside(
         size in vector(0.1..1.0),
         turn in rotation(),
         shift in vector(-2.0..2.0),
@@ -70,7 +70,7 @@ proptest! {
             prop_assert!(surface[..i].iter().all(|q| p.distance(*q) > 0.79 * spacing));
         }
 
-        // none outside, and as many as the volume holds, give or take a layer at the surface
+        // none outside, and as many as follow from the volume, up to a layer at the surface
         let inside = mesh.sample(Sampling::Volume { spacing }).unwrap_or_default();
         prop_assert!(inside.iter().all(|p| back(p).max_element() < 0.0));
         let volume = size.x * size.y * size.z;
@@ -80,7 +80,7 @@ proptest! {
     }
 
     #[test]
-    fn no_finite_mesh_makes_anything_panic(
+    fn finite_meshes_never_cause_a_panic(
         vertices in prop::collection::vec(vector(-1e308..1e308), 1..12),
         scale in prop::sample::select(vec![1.0, 1e-100, 1e-300, 1e-308, 0.0]),
         triangles in prop::collection::vec([0u32..14, 0..14, 0..14], 0..12),
@@ -97,11 +97,11 @@ proptest! {
     }
 
     #[test]
-    fn random_closed_meshes_hold_no_point_outside(
+    fn lattice_points_are_exactly_those_inside_random_closed_meshes(
         corners in prop::collection::vec([-3i32..4, -3..4, -3..4], 4..40),
         spacing in prop::sample::select(vec![0.25, 0.5, 1.0, 0.37]),
     ) {
-        // tetrahedra on whole coordinates: rays along the lattice meet edges and vertices all the time
+        // tetrahedra with integer coordinates, so that lines along the lattice often hit edges and vertices
         let mut mesh = Mesh::default();
         let mut solids = Vec::new();
         for four in corners.chunks_exact(4) {
@@ -130,10 +130,10 @@ proptest! {
         let near = |p| solids.iter().any(|&s| depth(p, s).abs() < 1e-4);
 
         let points = mesh.sample(Sampling::Volume { spacing }).unwrap_or_default();
-        // the walls between two that touch are inside both or neither
+        // points on a common wall may count either way
         prop_assert!(points.iter().all(|&p| deepest(p) > -1e-12));
 
-        // and none inside is missing: compare with the lattice, tried point by point
+        // none inside is missing: compare with a test of each lattice point
         let (mut min, mut max) = (mesh.vertices[0], mesh.vertices[0]);
         for v in &mesh.vertices {
             (min, max) = (min.min(*v), max.max(*v));

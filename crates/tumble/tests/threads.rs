@@ -9,22 +9,22 @@ use tumble::{
     WallBox, WallPlane, World, WorldBuilder,
 };
 
-/// Small numbers that look random, the same every time.
-struct Dice(u64);
+/// A linear congruential generator.
+struct Random(u64);
 
-impl Dice {
-    fn roll(&mut self) -> u64 {
+impl Random {
+    fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         self.0 >> 33
     }
 
     /// Between -1 and 1.
-    fn throw(&mut self) -> f64 {
-        (self.roll() % 2001) as f64 / 1000.0 - 1.0
+    fn uniform(&mut self) -> f64 {
+        (self.next() % 2001) as f64 / 1000.0 - 1.0
     }
 
     fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.throw(), self.throw(), self.throw())
+        DVec3::new(self.uniform(), self.uniform(), self.uniform())
     }
 }
 
@@ -38,18 +38,18 @@ fn solid(primitive: Primitive) -> Arc<Shape> {
     Arc::new(Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Solid).unwrap())
 }
 
-fn rough(dice: &mut Dice, body: Body, place: DVec3) -> Body {
-    let turned = DQuat::from_xyzw(dice.throw(), dice.throw(), dice.throw(), 1.5);
-    let (velocity, spin) = (dice.vector() - DVec3::Y, dice.vector() * 5.0);
-    body.position(place + dice.vector() * 0.01)
+fn rough(random: &mut Random, body: Body, place: DVec3) -> Body {
+    let turned = DQuat::from_xyzw(random.uniform(), random.uniform(), random.uniform(), 1.5);
+    let (velocity, spin) = (random.vector() - DVec3::Y, random.vector() * 5.0);
+    body.position(place + random.vector() * 0.01)
         .orientation(turned)
         .velocity(velocity)
         .angular_velocity(spin)
 }
 
-/// 200 clumps, and on top of every second layer of them boxes and knots; a shaken slab beneath, which is also a belt.
+/// 200 clumps, with boxes and knots above, on an oscillating slab with a surface velocity.
 fn heap(integrator: Integrator) -> WorldBuilder {
-    let mut dice = Dice(7);
+    let mut random = Random(7);
     let clump = Arc::new(clump());
     let knot = solid(Primitive::Knot { radius: 0.06, tube_radius: 0.022, segments: 6 });
     let cube = solid(Primitive::Box { size: DVec3::new(0.2, 0.12, 0.15), divisions: 2 });
@@ -82,7 +82,7 @@ fn heap(integrator: Integrator) -> WorldBuilder {
             let place = DVec3::new(x, 0.15 + f64::from(layer) * 0.2, z);
             let spheres = Surface::Spheres { radius: 0.04 };
             let body = Body::new(Arc::clone(&clump)).particle_mass(0.2).surface(spheres);
-            world = world.body(rough(&mut dice, body, place));
+            world = world.body(rough(&mut random, body, place));
         }
     }
     for number in 0..8 {
@@ -90,7 +90,7 @@ fn heap(integrator: Integrator) -> WorldBuilder {
         let place = DVec3::new(x, 1.95 + 0.3 * f64::from(number / 4), z);
         let shape = if number % 2 == 0 { &knot } else { &cube };
         let body = Body::new(Arc::clone(shape)).mass(0.8).surface(Surface::Mesh);
-        world = world.body(rough(&mut dice, body, place).velocity(DVec3::Y * -4.0));
+        world = world.body(rough(&mut random, body, place).velocity(DVec3::Y * -4.0));
     }
     world
 }
@@ -113,7 +113,7 @@ fn hash_after(steps: u32, threads: usize, integrator: Integrator) -> (String, us
 }
 
 #[test]
-fn the_number_of_threads_changes_no_bit() {
+fn the_number_of_threads_does_not_change_any_bit() {
     for (integrator, steps) in [(Integrator::Splitting, 2500), (Integrator::Euler, 600)] {
         let (alone, springs) = hash_after(steps, 1, integrator);
         assert!(springs > 50, "hardly a heap: {springs} springs");
@@ -125,24 +125,24 @@ fn the_number_of_threads_changes_no_bit() {
 }
 
 #[test]
-fn what_is_forgotten_at_random_changes_no_bit() {
-    let mut kept = heap(Integrator::Splitting).build().unwrap();
-    let mut forgetful = kept.clone();
-    let mut dice = Dice(99);
+fn dropping_cached_data_at_random_does_not_change_any_bit() {
+    let mut cached = heap(Integrator::Splitting).build().unwrap();
+    let mut uncached = cached.clone();
+    let mut random = Random(99);
     for step in 0..2500 {
-        kept.step().unwrap();
-        if dice.roll().is_multiple_of(7) {
-            forgetful.forget_scratch();
+        cached.step().unwrap();
+        if random.next().is_multiple_of(7) {
+            uncached.forget_scratch();
         }
-        forgetful.step().unwrap();
+        uncached.step().unwrap();
         if step % 100 == 99 {
-            assert_eq!(kept.state().hash(), forgetful.state().hash(), "after step {step}");
+            assert_eq!(cached.state().hash(), uncached.state().hash(), "after step {step}");
         }
     }
 }
 
 #[test]
-fn a_heap_that_is_put_back_goes_on_to_the_same_bits() {
+fn a_restored_heap_continues_bit_for_bit() {
     for integrator in [Integrator::Splitting, Integrator::Euler] {
         let mut whole = heap(integrator).build().unwrap();
         advance(&mut whole, 1500);
@@ -150,7 +150,7 @@ fn a_heap_that_is_put_back_goes_on_to_the_same_bits() {
             assert!(!whole.state().pair_springs.is_empty());
             let mut again = heap(integrator).build().unwrap();
             again.restore(whole.state().clone()).unwrap();
-            // looking at it changes nothing
+            // reading the energy does not change the state
             assert_eq!(whole.energy(), again.energy());
             advance(&mut whole, 150);
             advance(&mut again, 150);
@@ -160,9 +160,9 @@ fn a_heap_that_is_put_back_goes_on_to_the_same_bits() {
     }
 }
 
-/// Clumps with friction on a floor without: its contacts lie in lanes where others have been.
+/// Clumps with friction on a floor without friction, so that lanes are reused by contacts without springs.
 fn on_ice(integrator: Integrator) -> World {
-    let mut dice = Dice(5);
+    let mut random = Random(5);
     let (clump, spheres) = (Arc::new(clump()), Surface::Spheres { radius: 0.04 });
     let material = Material {
         collision_stiffness: 2e4,
@@ -178,13 +178,13 @@ fn on_ice(integrator: Integrator) -> World {
         let cell =
             DVec3::new(f64::from(number % 5), f64::from(number / 25), f64::from(number / 5 % 5));
         let body = Body::new(Arc::clone(&clump)).particle_mass(0.2).surface(spheres);
-        world = world.body(rough(&mut dice, body, cell * 0.2 + DVec3::Y * 0.15));
+        world = world.body(rough(&mut random, body, cell * 0.2 + DVec3::Y * 0.15));
     }
     world.build().unwrap()
 }
 
 #[test]
-fn what_is_asked_of_a_state_does_not_depend_on_what_came_before() {
+fn energy_and_depths_depend_on_the_state_only() {
     use Integrator::{Euler, Splitting};
     for (integrator, threads) in [(Splitting, 1), (Splitting, 2), (Euler, 2)] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

@@ -1,32 +1,32 @@
-//! Why a mesh has no inside.
+//! Why a mesh has no signed distance.
 
 use crate::Closedness;
 
-/// Why no signed distance to a mesh exists.
+/// Why the signed distance to a mesh is not defined.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SurfaceError {
-    /// It has no triangles, or only collapsed ones.
+    /// The mesh has no triangles, or only degenerate ones.
     NoTriangles,
-    /// Some edges are passed more often one way than the other: the triangles there are not wound alike.
+    /// The triangles at some edges are wound inconsistently.
     WronglyWound(Closedness),
-    /// It has holes too large to tell inside from outside; see [`SignedDistance`](crate::SignedDistance).
+    /// The holes are too large to distinguish inside and outside; see [`SignedDistance`](crate::SignedDistance).
     Open {
-        /// The edges, with the first few.
+        /// The faulty edges.
         closedness: Closedness,
-        /// Holes; those that share a vertex count as one.
+        /// The number of holes; holes that share a vertex count as one.
         holes: usize,
-        /// Length of the boundary of the largest hole (m).
+        /// Length of the longest boundary of a hole (m).
         largest: f64,
-        /// How long the boundary of a hole may be (m).
+        /// The longest allowed boundary of a hole (m).
         largest_allowed: f64,
         /// Length of all boundaries together (m).
         total: f64,
-        /// How long all boundaries together may be (m).
+        /// The longest allowed length of all boundaries together (m).
         total_allowed: f64,
     },
-    /// It is flat: the volume inside is zero to rounding.
+    /// The mesh is flat: the enclosed volume is zero up to rounding.
     NoVolume,
-    /// It is smaller than 1e-60 m or larger than 1e60 m.
+    /// The mesh is smaller than 1e-60 m or larger than 1e60 m.
     OutOfRange {
         /// The longest edge of its bounding box (m).
         size: f64,
@@ -38,26 +38,26 @@ impl std::fmt::Display for SurfaceError {
         match self {
             Self::NoTriangles => write!(
                 f,
-                "the mesh has no triangles, so it has no surface that others could meet; give it triangles, or let it be met as spheres"
+                "the mesh has no triangles, so other bodies cannot collide with it; give it triangles, or use `surface = \"spheres\"`"
             ),
             Self::WronglyWound(closedness) => write!(
                 f,
-                "{closedness}; wind all triangles counter-clockwise seen from outside, or let the body be met as spheres"
+                "{closedness}; wind all triangles counter-clockwise seen from outside, or use `surface = \"spheres\"`"
             ),
             Self::Open { closedness, holes, largest, largest_allowed, total, total_allowed } => {
                 write!(
                     f,
                     "{closedness}; the boundary of the largest of {holes} hole(s) is {largest:.4} m long and all together {total:.4} m, \
-                     where {largest_allowed:.4} m and {total_allowed:.4} m are allowed; close the mesh, or let the body be met as spheres"
+                     where {largest_allowed:.4} m and {total_allowed:.4} m are allowed; close the mesh, or use `surface = \"spheres\"`"
                 )
             }
             Self::NoVolume => write!(
                 f,
-                "the mesh encloses no volume, so it has no inside; give it thickness, or let it be met as spheres"
+                "the mesh encloses no volume, so it has no inside; give it thickness, or use `surface = \"spheres\"`"
             ),
             Self::OutOfRange { size } => write!(
                 f,
-                "the mesh is {size:e} m large, and distances are only told for sizes from 1e-60 m to 1e60 m; check its units"
+                "the mesh is {size:e} m large, and only sizes from 1e-60 m to 1e60 m are supported; check its units"
             ),
         }
     }

@@ -1,50 +1,50 @@
-//! Angle-weighted pseudonormals: on which side of the surface a point is, told from the closest feature.
+//! Angle-weighted pseudonormals, which give the side of a point from its closest feature.
 //!
 //! Source: J. A. Bærentzen and H. Aanæs, "Signed distance computation using the angle weighted pseudonormal",
 //! IEEE TVCG 11 (2005) 243.
 
 use glam::DVec3;
 
-use super::outline::{Face, Outline};
-use super::triangle::{CORNER, FACE, Feature, SIDE};
+use super::oriented_surface::{Face, OrientedSurface};
+use super::triangle::{EDGE, FACE, Feature, VERTEX};
 
-/// A triangle lower than this part of its length has no normal to rely on.
+/// The height of a triangle, in units of its longest edge, below which its normal is unreliable.
 const THIN: f64 = 1e-10;
-/// Normals that cancel to less than this part of their sum tell no side.
+/// The length of a sum of normals, in units of their weights, below which it is unreliable.
 const CANCELLED: f64 = 1e-6;
 
-/// The pseudonormals of a triangle's sides and corners.
+/// The pseudonormals of a triangle's edges and vertices.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pseudonormals {
-    /// Unit normals of the sides ab, bc, ca and of the corners a, b, c.
+    /// Unit normals of the edges ab, bc, ca and of the vertices a, b, c.
     normals: [DVec3; 6],
-    /// Bit by feature: it does not tell on which side a point is.
+    /// One bit per feature: set if its normal does not determine the side of a point.
     doubtful: u8,
 }
 
 impl Pseudonormals {
-    /// What an unused slot holds.
+    /// The content of an unused slot.
     pub const NONE: Self = Self { normals: [DVec3::ZERO; 6], doubtful: 0 };
 
-    /// The normal of a side or corner.
+    /// The normal of an edge or vertex.
     #[inline(always)]
-    pub fn of(&self, feature: Feature) -> DVec3 {
-        self.normals[feature - SIDE]
+    pub fn get(&self, feature: Feature) -> DVec3 {
+        self.normals[feature - EDGE]
     }
 
-    /// Whether a feature does not tell on which side of the surface a point is.
+    /// Whether the normal of a feature does not determine the side of a point.
     #[inline(always)]
     pub fn is_doubtful(&self, feature: Feature) -> bool {
         self.doubtful >> feature & 1 == 1
     }
 
     fn set(&mut self, feature: Feature, normal: DVec3, doubtful: bool) {
-        self.normals[feature - SIDE] = normal;
+        self.normals[feature - EDGE] = normal;
         self.doubtful |= u8::from(doubtful) << feature;
     }
 }
 
-/// The unit vector of a sum of normals with the sum of their weights; `None` where they cancel.
+/// The unit vector along a weighted sum of normals; `None` if they cancel.
 fn unit(sum: DVec3, weight: f64) -> Option<DVec3> {
     let length = sum.length();
     (length > CANCELLED * weight).then(|| sum / length)
@@ -52,14 +52,14 @@ fn unit(sum: DVec3, weight: f64) -> Option<DVec3> {
 
 /// The pseudonormals of each face.
 ///
-/// In doubt are the boundaries of holes, edges at which more than two triangles meet, and triangles without a
-/// normal, with all that touches one of these.
-pub(super) fn pseudonormals(outline: &Outline) -> Vec<Pseudonormals> {
-    let faces = &outline.faces;
+/// Doubtful are the boundaries of holes, edges at which more than two triangles meet, triangles without a normal, and
+/// all features that touch one of these.
+pub(super) fn pseudonormals(surface: &OrientedSurface) -> Vec<Pseudonormals> {
+    let faces = &surface.faces;
     let mut found = vec![Pseudonormals::NONE; faces.len()];
-    let mut corners = vec![(DVec3::ZERO, 0.0, false); outline.vertices];
+    let mut corners = vec![(DVec3::ZERO, 0.0, false); surface.vertices];
 
-    // corners: the normals around them, weighted by the angles that the faces have there
+    // vertices: the normals of their faces, weighted by the angles at the vertex
     for face in faces {
         let thin = is_thin(face);
         for (corner, angle) in angles(face).into_iter().enumerate() {
@@ -70,19 +70,19 @@ pub(super) fn pseudonormals(outline: &Outline) -> Vec<Pseudonormals> {
         }
     }
 
-    // sides: the normals of both faces
-    for edge in outline.edges() {
-        let up = edge.iter().filter(|side| outline.goes_up(side)).count();
-        let sum: DVec3 = edge.iter().map(|side| faces[side.face].frame.normal).sum();
+    // edges: the sum of the normals of both faces
+    for edge in surface.edges() {
+        let ascending = edge.iter().filter(|half_edge| surface.is_ascending(half_edge)).count();
+        let sum: DVec3 = edge.iter().map(|half_edge| faces[half_edge.face].frame.normal).sum();
         let unit = unit(sum, edge.len() as f64);
-        let plain = edge.len() == 2 && up == 1;
-        let thin = edge.iter().any(|side| is_thin(&faces[side.face]));
-        for side in edge {
-            let normal = unit.unwrap_or(faces[side.face].frame.normal);
-            let doubtful = unit.is_none() || !plain || thin;
-            found[side.face].set(SIDE + side.corner, normal, doubtful);
+        let is_manifold = edge.len() == 2 && ascending == 1;
+        let thin = edge.iter().any(|half_edge| is_thin(&faces[half_edge.face]));
+        for half_edge in edge {
+            let normal = unit.unwrap_or(faces[half_edge.face].frame.normal);
+            let doubtful = unit.is_none() || !is_manifold || thin;
+            found[half_edge.face].set(EDGE + half_edge.corner, normal, doubtful);
         }
-        if !plain {
+        if !is_manifold {
             for end in edge[0].ends {
                 corners[end as usize].2 = true;
             }
@@ -95,7 +95,7 @@ pub(super) fn pseudonormals(outline: &Outline) -> Vec<Pseudonormals> {
             let (sum, weight, doubtful) = corners[vertex as usize];
             let unit = unit(sum, weight);
             let normal = unit.unwrap_or(face.frame.normal);
-            found.set(CORNER + corner, normal, doubtful || unit.is_none());
+            found.set(VERTEX + corner, normal, doubtful || unit.is_none());
         }
     }
     found

@@ -3,16 +3,16 @@
 use fearless_simd::{Level, Simd, dispatch, f64x4, prelude::*};
 use glam::DVec3;
 
-use super::tree::{LEAF, Tree, WAITING};
+use super::tree::{LEAF, STACK_SIZE, Tree};
 use super::triangle::WIDTH;
 
-/// By how much a squared distance may be larger than that to the box of the triangle, but for what [`super::tree`] adds to boxes.
+/// Factor on squared distances that allows for rounding in comparisons with the distance to a box.
 const CLOSE: f64 = 1.0 + 1e-12;
-/// Up to this distance more than the closest triangle is looked for, in units of how much farther that is.
+/// The largest distance at which the neighbourhood of the closest triangle is searched, in units of its width.
 const FAR: f64 = 3.0;
-/// Groups that are remembered.
-pub(super) const KEPT: usize = 4;
-/// No group.
+/// The number of groups in a patch.
+pub(super) const PATCH_GROUPS: usize = 4;
+/// Marks the absence of a group.
 pub(super) const NO_GROUP: u32 = u32::MAX;
 
 /// The closest triangle.
@@ -25,53 +25,53 @@ pub(super) struct Closest {
 
 /// The closest groups.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Around {
-    /// Their squared distances (m²), and which they are, the closest first.
-    pub groups: [(f64, u32); KEPT],
-    /// All other groups are at least as far away (squared, m²).
+pub(super) struct Neighbourhood {
+    /// Squared distances (m²) and indices of the closest groups, in ascending order.
+    pub groups: [(f64, u32); PATCH_GROUPS],
+    /// A lower bound on the squared distance of all other groups (m²).
     pub others: f64,
 }
 
-/// What a search looks for.
-trait Looking {
-    /// What is farther than the root of this (m²) need not be looked at.
+/// A kind of query.
+trait Query {
+    /// The squared distance (m²) beyond which nothing has to be visited.
     fn limit(&self) -> f64;
-    /// A group that is looked at.
-    fn look_at(&mut self, group: u32, squared: &[f64; WIDTH], tree: &Tree);
-    /// Groups that are not, since they are at least this far away (squared, m²).
+    /// Visits a group, given the squared distances of its triangles.
+    fn visit(&mut self, group: u32, squared: &[f64; WIDTH], tree: &Tree);
+    /// Notes that groups at this squared distance (m²) or beyond are skipped.
     #[inline(always)]
-    fn leave_out(&mut self, _squared: f64) {}
+    fn skip(&mut self, _squared: f64) {}
 }
 
-/// The closest so far.
-struct Best {
+/// Finds the closest triangle.
+struct NearestQuery {
     slot: usize,
     index: u32,
     squared: f64,
     limit: f64,
 }
 
-/// Whether anything is close enough.
-struct Any {
-    /// Less than zero once something is (m²).
+/// Finds any triangle within a distance.
+struct AnyQuery {
+    /// Negative once a triangle is found (m²).
     limit: f64,
-    /// Which group.
+    /// The group of that triangle.
     group: u32,
 }
 
-/// The closest so far, and what else is close.
-struct Wide {
-    best: Best,
-    /// How much farther than the closest is looked (m).
-    wider: f64,
+/// Finds the closest triangle and its neighbourhood.
+struct NeighbourhoodQuery {
+    nearest: NearestQuery,
+    /// How much farther than the closest triangle the neighbourhood extends (m).
+    width: f64,
     limit: f64,
-    around: Around,
+    neighbourhood: Neighbourhood,
 }
 
-impl Best {
+impl NearestQuery {
     #[inline(always)]
     fn new(most: f64) -> Self {
-        // boxes that are missing are at infinity, and farther than this
+        // finite, so that missing boxes, which are at infinity, are farther
         let most = most.min(0.5 * f64::MAX);
         Self { slot: usize::MAX, index: u32::MAX, squared: most, limit: most * CLOSE }
     }
@@ -81,15 +81,15 @@ impl Best {
     }
 }
 
-impl Looking for Best {
+impl Query for NearestQuery {
     #[inline(always)]
     fn limit(&self) -> f64 {
         self.limit
     }
 
     #[inline(always)]
-    fn look_at(&mut self, group: u32, squared: &[f64; WIDTH], tree: &Tree) {
-        // most groups have nothing closer: one comparison for all
+    fn visit(&mut self, group: u32, squared: &[f64; WIDTH], tree: &Tree) {
+        // most groups have nothing closer: compare only the minimum
         if least(squared) > self.squared {
             return;
         }
@@ -108,40 +108,40 @@ impl Looking for Best {
     }
 }
 
-impl Looking for Wide {
+impl Query for NeighbourhoodQuery {
     #[inline(always)]
     fn limit(&self) -> f64 {
         self.limit
     }
 
     #[inline(always)]
-    fn look_at(&mut self, group: u32, squared: &[f64; WIDTH], tree: &Tree) {
+    fn visit(&mut self, group: u32, squared: &[f64; WIDTH], tree: &Tree) {
         let least = least(squared);
-        if least <= self.best.squared {
-            self.best.look_at(group, squared, tree);
-            let distance = self.best.squared.sqrt();
-            // from afar too much of the surface is about as close
+        if least <= self.nearest.squared {
+            self.nearest.visit(group, squared, tree);
+            let distance = self.nearest.squared.sqrt();
+            // far away, too much of the surface is at nearly the same distance
             let farther =
-                if distance <= FAR * self.wider { distance + self.wider } else { distance };
+                if distance <= FAR * self.width { distance + self.width } else { distance };
             self.limit = farther * farther * CLOSE;
         }
-        self.around.add(least, group);
+        self.neighbourhood.insert(least, group);
     }
 
     #[inline(always)]
-    fn leave_out(&mut self, squared: f64) {
-        self.around.others = self.around.others.min(squared);
+    fn skip(&mut self, squared: f64) {
+        self.neighbourhood.others = self.neighbourhood.others.min(squared);
     }
 }
 
-impl Looking for Any {
+impl Query for AnyQuery {
     #[inline(always)]
     fn limit(&self) -> f64 {
         self.limit
     }
 
     #[inline(always)]
-    fn look_at(&mut self, group: u32, squared: &[f64; WIDTH], _: &Tree) {
+    fn visit(&mut self, group: u32, squared: &[f64; WIDTH], _: &Tree) {
         if least(squared) <= self.limit {
             self.group = group;
             self.limit = -1.0;
@@ -149,17 +149,17 @@ impl Looking for Any {
     }
 }
 
-impl Around {
-    /// Takes a group in its place; the farthest becomes one of the others.
+impl Neighbourhood {
+    /// Inserts a group in order; the farthest becomes one of the others.
     #[inline(always)]
-    fn add(&mut self, squared: f64, group: u32) {
-        let mut given = (squared, group);
-        for kept in &mut self.groups {
-            if given.0 < kept.0 {
-                std::mem::swap(kept, &mut given);
+    fn insert(&mut self, squared: f64, group: u32) {
+        let mut inserted = (squared, group);
+        for entry in &mut self.groups {
+            if inserted.0 < entry.0 {
+                std::mem::swap(entry, &mut inserted);
             }
         }
-        self.others = self.others.min(given.0);
+        self.others = self.others.min(inserted.0);
     }
 }
 
@@ -169,8 +169,8 @@ fn least([a, b, c, d]: &[f64; WIDTH]) -> f64 {
 }
 
 impl Tree {
-    /// The triangle closest to a point, of equally close ones that with the lowest index; none if all are
-    /// farther than the root of `most` (m²). The group of slot `hint` is looked at first.
+    /// The triangle closest to a point, the one with the lowest index if several are equally close; `None` if all are
+    /// farther than the root of `most` (m²). The group of slot `hint` is visited first.
     pub fn nearest(
         &self,
         level: Level,
@@ -179,50 +179,59 @@ impl Tree {
         hint: Option<usize>,
     ) -> Option<Closest> {
         let hint = hint.map_or(NO_GROUP, |slot| (slot / WIDTH) as u32);
-        let mut best = Best::new(most);
-        dispatch!(level, simd => self.search(simd, point, hint, &mut best));
-        best.found()
+        let mut query = NearestQuery::new(most);
+        dispatch!(level, simd => self.search(simd, point, hint, &mut query));
+        query.found()
     }
 
-    /// As [`Self::nearest`], with the groups that are up to `wider` (m) farther away than that. Group `hint` is looked at first.
-    pub fn nearest_around(
+    /// As [`Self::nearest`], with the groups up to `width` (m) farther away. Group `hint` is visited first.
+    pub fn nearest_with_neighbourhood(
         &self,
         level: Level,
         point: DVec3,
         most: f64,
         hint: u32,
-        wider: f64,
-    ) -> (Option<Closest>, Around) {
-        let best = Best::new(most);
-        let around = Around { groups: [(f64::INFINITY, NO_GROUP); KEPT], others: f64::INFINITY };
-        let mut wide = Wide { limit: best.limit, best, wider, around };
-        dispatch!(level, simd => self.search(simd, point, hint, &mut wide));
-        (wide.best.found(), wide.around)
+        width: f64,
+    ) -> (Option<Closest>, Neighbourhood) {
+        let nearest = NearestQuery::new(most);
+        let neighbourhood = Neighbourhood {
+            groups: [(f64::INFINITY, NO_GROUP); PATCH_GROUPS],
+            others: f64::INFINITY,
+        };
+        let mut query = NeighbourhoodQuery { limit: nearest.limit, nearest, width, neighbourhood };
+        dispatch!(level, simd => self.search(simd, point, hint, &mut query));
+        (query.nearest.found(), query.neighbourhood)
     }
 
-    /// As [`Self::nearest`] among the triangles of some groups.
+    /// As [`Self::nearest`], among the triangles of these groups.
     pub fn nearest_of(&self, level: Level, point: DVec3, groups: &[u32]) -> Option<Closest> {
-        let mut best = Best::new(f64::INFINITY);
-        dispatch!(level, simd => self.look_at(simd, point, groups, &mut best));
-        best.found()
+        let mut query = NearestQuery::new(f64::INFINITY);
+        dispatch!(level, simd => self.visit_groups(simd, point, groups, &mut query));
+        query.found()
     }
 
-    /// A group of which a triangle is no farther from a point than the root of `most` (m²). Group `hint` is looked at first.
+    /// A group with a triangle no farther from a point than the root of `most` (m²). Group `hint` is visited first.
     pub fn any_within(&self, level: Level, point: DVec3, most: f64, hint: u32) -> Option<u32> {
-        let mut any = Any { limit: most.min(0.5 * f64::MAX), group: NO_GROUP };
+        let mut any = AnyQuery { limit: most.min(0.5 * f64::MAX), group: NO_GROUP };
         dispatch!(level, simd => self.search(simd, point, hint, &mut any));
         (any.group != NO_GROUP).then_some(any.group)
     }
 
     #[inline(always)]
-    fn look_at<S: Simd>(&self, simd: S, point: DVec3, groups: &[u32], best: &mut Best) {
+    fn visit_groups<S: Simd>(
+        &self,
+        simd: S,
+        point: DVec3,
+        groups: &[u32],
+        query: &mut NearestQuery,
+    ) {
         simd.vectorize(
             #[inline(always)]
             || {
                 let point = point.to_array().map(|x| f64x4::splat(simd, x));
                 for &number in groups {
                     if let Some(group) = self.groups.get(number as usize) {
-                        best.look_at(number, &group.squared(simd, point), self);
+                        query.visit(number, &group.squared(simd, point), self);
                     }
                 }
             },
@@ -230,46 +239,46 @@ impl Tree {
     }
 
     #[inline(always)]
-    fn search<S: Simd>(&self, simd: S, point: DVec3, hint: u32, looking: &mut impl Looking) {
+    fn search<S: Simd>(&self, simd: S, point: DVec3, hint: u32, query: &mut impl Query) {
         simd.vectorize(
             #[inline(always)]
             || {
                 let point = point.to_array().map(|x| f64x4::splat(simd, x));
                 if let Some(group) = self.groups.get(hint as usize) {
-                    looking.look_at(hint, &group.squared(simd, point), self);
+                    query.visit(hint, &group.squared(simd, point), self);
                 }
-                let mut waiting = [(0.0, 0u32); WAITING];
+                let mut stack = [(0.0, 0u32); STACK_SIZE];
                 let mut count = 1;
                 while count > 0 {
                     count -= 1;
-                    let (squared, child) = waiting[count];
-                    if squared > looking.limit() {
-                        looking.leave_out(squared);
+                    let (squared, child) = stack[count];
+                    if squared > query.limit() {
+                        query.skip(squared);
                         continue;
                     }
                     if child & LEAF != 0 {
                         let group = child & !LEAF;
                         if hint != group {
                             let squared = self.groups[group as usize].squared(simd, point);
-                            looking.look_at(group, &squared, self);
+                            query.visit(group, &squared, self);
                         }
                         continue;
                     }
                     let node = &self.nodes[child as usize];
                     let squared = node.squared(simd, point);
-                    // the nearest goes on top
+                    // push in order of descending distance, so that the nearest is popped first
                     let start = count;
                     for (&squared, &child) in squared.iter().zip(&node.child) {
-                        if squared > looking.limit() {
-                            looking.leave_out(squared);
+                        if squared > query.limit() {
+                            query.skip(squared);
                             continue;
                         }
                         let mut at = count;
-                        while at > start && waiting[at - 1].0 < squared {
-                            waiting[at] = waiting[at - 1];
+                        while at > start && stack[at - 1].0 < squared {
+                            stack[at] = stack[at - 1];
                             at -= 1;
                         }
-                        waiting[at] = (squared, child);
+                        stack[at] = (squared, child);
                         count += 1;
                     }
                 }

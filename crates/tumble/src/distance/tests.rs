@@ -8,21 +8,21 @@ use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::Primitive;
+use crate::{Mesh, Primitive};
 
 const NO_HINT: u32 = u32::MAX;
 
-/// A primitive by its name.
+/// The mesh of a built-in shape.
 fn primitive(name: &str) -> Mesh {
     Primitive::named(name).unwrap().mesh().unwrap()
 }
 
-/// A mesh, changed vertex by vertex.
+/// A mesh with transformed vertices.
 fn moved(mesh: &Mesh, by: impl Fn(DVec3) -> DVec3) -> Mesh {
     Mesh { vertices: mesh.vertices.iter().map(|&v| by(v)).collect(), ..mesh.clone() }
 }
 
-/// A sphere of any radius in each direction, told by a seed: star-shaped and closed.
+/// A closed star-shaped mesh: a sphere with a random radius in each direction.
 fn star(seed: u64) -> Mesh {
     let sphere = Primitive::Sphere { radius: 1.0, subdivisions: 2 }.mesh().unwrap();
     let mut state = seed | 1;

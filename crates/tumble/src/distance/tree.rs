@@ -1,19 +1,19 @@
-//! A tree of boxes over the triangles: each node has up to four children, and a leaf is a group of four triangles.
+//! A bounding volume tree over triangles. A node has up to four children; a leaf is a group of up to four triangles.
 
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::DVec3;
 
 use super::triangle::{Frame, Group, WIDTH};
 
-/// Children that can wait at once: three a level, and a tree of 2³² triangles has 16 levels.
-pub(super) const WAITING: usize = 64;
+/// Capacity of the traversal stack: three entries per level, and a tree of 2³² triangles has 16 levels.
+pub(super) const STACK_SIZE: usize = 64;
 /// Marks a child that is a group.
 pub(super) const LEAF: u32 = 1 << 31;
-/// By how much of its longest side the box of a triangle is larger than the triangle: more than what
-/// rounding can take from the distance, so that no order of the search leaves out the closest.
+/// Margin of a triangle's box in units of its longest edge. It exceeds the rounding of distances, so that the result
+/// does not depend on the order of the search.
 const SLACK: f64 = 1e-13;
 
-/// The boxes of up to four children (m); those that are missing are at infinity.
+/// The boxes of up to four children (m); missing children have boxes at infinity.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Node {
@@ -31,11 +31,11 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// The box around nothing.
+    /// The empty box.
     pub const NONE: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
-    /// The box around both.
-    pub fn with(self, other: Self) -> Self {
+    /// The bounding box of both.
+    pub fn union(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
@@ -52,21 +52,21 @@ impl Extent {
     }
 }
 
-/// What is being sorted into the tree.
+/// A triangle during construction of the tree.
 struct Item {
     centre: DVec3,
-    around: Extent,
+    bounds: Extent,
     /// Index in the mesh.
     index: u32,
     frame: Frame,
 }
 
-/// A ray: where from, where to, and the part of it that counts.
+/// A ray segment: the points `from` + t `along` for t in `part`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
     pub from: DVec3,
     pub along: DVec3,
-    /// In units of `along`.
+    /// The range of t.
     pub part: [f64; 2],
 }
 
@@ -75,46 +75,47 @@ pub(super) struct Ray {
 pub(super) struct Tree {
     pub nodes: Vec<Node>,
     pub groups: Vec<Group>,
-    /// How many triangles there are.
+    /// The number of triangles.
     count: usize,
 }
 
 impl Tree {
-    /// Sorts triangles, at least one, with their indices in the mesh into a tree.
+    /// Builds a tree of at least one triangle, given with their indices in the mesh.
     pub fn build(triangles: impl Iterator<Item = (u32, Frame)>) -> Self {
-        let mut items: Vec<Item> = triangles.map(|(index, frame)| Item::of(index, frame)).collect();
+        let mut items: Vec<Item> =
+            triangles.map(|(index, frame)| Item::new(index, frame)).collect();
         let groups = items.len().div_ceil(WIDTH);
         let mut tree = Self {
             nodes: Vec::with_capacity(groups / 2 + 1),
             groups: Vec::with_capacity(groups),
             count: items.len(),
         };
-        tree.grow(&mut items);
+        tree.add_node(&mut items);
         tree
     }
 
-    /// Adds a node over the items, and all that is under it.
-    fn grow(&mut self, items: &mut [Item]) -> u32 {
+    /// Adds a node for the items and its subtree.
+    fn add_node(&mut self, items: &mut [Item]) -> u32 {
         let here = self.nodes.len();
         self.nodes.push(Node::EMPTY);
-        let (left, right) = halved(items);
-        let ((a, b), (c, d)) = (halved(left), halved(right));
+        let (left, right) = split(items);
+        let ((a, b), (c, d)) = (split(left), split(right));
         let parts = [a, b, c, d].into_iter().filter(|part| !part.is_empty());
         for (lane, part) in parts.enumerate() {
-            let around = part.iter().fold(Extent::NONE, |all, item| all.with(item.around));
+            let bounds = part.iter().fold(Extent::NONE, |all, item| all.union(item.bounds));
             let child =
-                if part.len() <= WIDTH { self.add_group(part) | LEAF } else { self.grow(part) };
-            self.nodes[here].set(lane, around, child);
+                if part.len() <= WIDTH { self.add_group(part) | LEAF } else { self.add_node(part) };
+            self.nodes[here].set(lane, bounds, child);
         }
         here as u32
     }
 
     fn add_group(&mut self, items: &mut [Item]) -> u32 {
-        // the same order within the group whatever the selection above did
+        // a fixed order within the group, since the selection leaves it open
         items.sort_unstable_by_key(|item| item.index);
         let members: Vec<(u32, Frame)> =
             items.iter().map(|item| (item.index, item.frame)).collect();
-        self.groups.push(Group::of(&members));
+        self.groups.push(Group::new(&members));
         self.groups.len() as u32 - 1
     }
 
@@ -122,7 +123,7 @@ impl Tree {
     pub fn each_slot(&self, mut visit: impl FnMut(usize, u32)) {
         for (group, members) in self.groups.iter().enumerate() {
             for (lane, &index) in members.index.iter().enumerate() {
-                // what fills up a group repeats its first
+                // padding repeats the first triangle
                 if lane == 0 || index != members.index[0] {
                     visit(group * WIDTH + lane, index);
                 }
@@ -130,18 +131,18 @@ impl Tree {
         }
     }
 
-    /// How many slots there are; some may be unused.
+    /// The number of slots; some may be unused.
     pub fn slots(&self) -> usize {
         self.groups.len() * WIDTH
     }
 
-    /// How many triangles there are.
+    /// The number of triangles.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The edge of a square as large as a typical triangle (m).
-    pub fn grain(&self) -> f64 {
+    /// The square root of the mean area of the triangles (m).
+    pub fn mean_triangle_size(&self) -> f64 {
         let mut area = 0.0;
         self.each_slot(|slot, _| area += self.frame(slot).area());
         (area / self.count as f64).sqrt()
@@ -159,20 +160,20 @@ impl Tree {
         self.groups[slot / WIDTH].index[slot % WIDTH]
     }
 
-    /// Bytes in use.
+    /// Heap memory in use (bytes).
     pub fn memory(&self) -> usize {
         size_of::<Node>() * self.nodes.capacity() + size_of::<Group>() * self.groups.capacity()
     }
 
-    /// Calls `hit(slot, frame)` for each triangle whose box a ray may meet; it returns how much of the ray is
-    /// still of interest, in units of its vector.
+    /// Calls `hit(slot, frame)` for each triangle whose box the ray may intersect. `hit` returns the new upper end of
+    /// the range of t.
     pub fn along_ray(&self, ray: &Ray, mut hit: impl FnMut(usize, &Frame) -> f64) {
         let mut end = ray.part[1];
-        let mut waiting = [0u32; WAITING];
+        let mut stack = [0u32; STACK_SIZE];
         let mut count = 1;
         while count > 0 {
             count -= 1;
-            let child = waiting[count];
+            let child = stack[count];
             if child & LEAF != 0 {
                 let group = (child & !LEAF) as usize;
                 for lane in 0..WIDTH {
@@ -182,15 +183,16 @@ impl Tree {
             }
             let node = &self.nodes[child as usize];
             for (lane, &child) in node.child.iter().enumerate() {
-                if node.meets(lane, ray, end) {
-                    waiting[count] = child;
+                if node.intersects(lane, ray, end) {
+                    stack[count] = child;
                     count += 1;
                 }
             }
         }
     }
 
-    /// The sum of the solid angles of all triangles over 4π: one inside, zero outside, between where there are holes.
+    /// The generalised winding number: the sum of the solid angles of all triangles over 4π. It is one inside a closed
+    /// mesh, zero outside, and in between near holes.
     ///
     /// Source: A. Jacobson, L. Kavan and O. Sorkine-Hornung, ACM Trans. Graph. 32 (2013) 33.
     pub fn winding(&self, point: DVec3) -> f64 {
@@ -200,8 +202,8 @@ impl Tree {
     }
 }
 
-/// Halves a slice across the longest side of the box of their centres, each half whole groups but the last.
-fn halved(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
+/// Splits items across the longest side of the box of their centres; all groups are full but the last.
+fn split(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
     let groups = items.len().div_ceil(WIDTH);
     if groups < 2 {
         return items.split_at_mut(items.len());
@@ -212,7 +214,7 @@ fn halved(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
         });
     let axis = (high - low).max_position();
     let middle = groups.div_ceil(2) * WIDTH;
-    // the index decides between equals: the order is the same on every machine
+    // ties are broken by index, so that the order is the same on every machine
     items.select_nth_unstable_by(middle, |a, b| {
         a.centre[axis].total_cmp(&b.centre[axis]).then(a.index.cmp(&b.index))
     });
@@ -220,11 +222,11 @@ fn halved(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
 }
 
 impl Item {
-    fn of(index: u32, frame: Frame) -> Self {
+    fn new(index: u32, frame: Frame) -> Self {
         let [a, b, c] = frame.corners();
         let slack = DVec3::splat(SLACK * frame.length);
-        let around = Extent { low: a.min(b).min(c) - slack, high: a.max(b).max(c) + slack };
-        Self { centre: 0.5 * around.low + 0.5 * around.high, around, index, frame }
+        let bounds = Extent { low: a.min(b).min(c) - slack, high: a.max(b).max(c) + slack };
+        Self { centre: 0.5 * bounds.low + 0.5 * bounds.high, bounds, index, frame }
     }
 }
 
@@ -235,10 +237,10 @@ impl Node {
         child: [0; WIDTH],
     };
 
-    fn set(&mut self, lane: usize, around: Extent, child: u32) {
+    fn set(&mut self, lane: usize, bounds: Extent, child: u32) {
         for axis in 0..3 {
-            self.low[axis][lane] = around.low[axis];
-            self.high[axis][lane] = around.high[axis];
+            self.low[axis][lane] = bounds.low[axis];
+            self.high[axis][lane] = bounds.high[axis];
         }
         self.child[lane] = child;
     }
@@ -252,7 +254,7 @@ impl Node {
         (x * x + y * y + z * z).into()
     }
 
-    /// How far a point is out of the boxes along an axis (m).
+    /// The distance of a point from the boxes along an axis (m).
     #[inline(always)]
     fn beyond<S: Simd>(&self, simd: S, point: [f64x4<S>; 3], axis: usize) -> f64x4<S> {
         let below = f64x4::simd_from(simd, self.low[axis]) - point[axis];
@@ -260,8 +262,8 @@ impl Node {
         below.max(above).max(f64x4::splat(simd, 0.0))
     }
 
-    /// Whether the box of a child may meet a ray.
-    fn meets(&self, lane: usize, ray: &Ray, end: f64) -> bool {
+    /// Whether the box of a child may intersect a ray.
+    fn intersects(&self, lane: usize, ray: &Ray, end: f64) -> bool {
         let [mut from, mut to] = [ray.part[0], end];
         for axis in 0..3 {
             let (low, high) = (self.low[axis][lane], self.high[axis][lane]);
@@ -276,7 +278,7 @@ impl Node {
             from = from.max(a.min(b));
             to = to.min(a.max(b));
         }
-        // a box that is missing is at infinity, and rounding must not take one that is not
+        // missing boxes are at infinity; the slack covers rounding
         let slack = 1e-12 * from.abs().max(to.abs());
         self.low[0][lane] <= self.high[0][lane] && from <= to + slack
     }

@@ -1,86 +1,87 @@
-//! A triangle in its own frame, and four of them side by side.
+//! A triangle in its local frame, and groups of four triangles for SIMD.
 //!
-//! In the frame of a triangle, corner a is the origin, the longest side ab the first axis and the normal the
-//! third, so that the distance to it is a distance in the plane and a height. The squared distance is the same
-//! to the last bit whether one triangle is asked or four at once, and so depends on nothing but point and triangle.
+//! In the local frame, vertex a is the origin, the longest edge ab the first axis and the normal the third. The
+//! distance to the triangle then separates into a distance in the plane and a height. Scalar and SIMD code compute
+//! squared distances with the same arithmetic, so that the result depends on point and triangle only.
 
 use fearless_simd::{Simd, f64x4, prelude::*};
 use glam::DVec3;
 
-/// Triangles side by side.
+/// Triangles per group.
 pub(super) const WIDTH: usize = 4;
 
-/// The face, the side after corner k (1 + k), corner k (4 + k): what of a triangle is closest to a point.
+/// A feature of a triangle: the face, the edge after vertex k (1 + k), or vertex k (4 + k).
 pub(super) type Feature = usize;
 /// The face.
 pub(super) const FACE: Feature = 0;
-/// The first of the sides ab, bc, ca.
-pub(super) const SIDE: Feature = 1;
-/// The first of the corners a, b, c.
-pub(super) const CORNER: Feature = 4;
+/// The first of the edges ab, bc, ca.
+pub(super) const EDGE: Feature = 1;
+/// The first of the vertices a, b, c.
+pub(super) const VERTEX: Feature = 4;
 
-/// Triangles lower than this part of their length get a normal from their frame, not the frame from the normal.
-const STOUT: f64 = 0.01;
+/// The ratio of height to longest edge below which the normal is computed from the in-plane axes, not the other way
+/// round.
+const THIN: f64 = 0.01;
 
-/// A triangle in its own frame.
+/// A triangle with its local frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
-    /// Corner a (m).
+    /// Vertex a (m).
     pub origin: DVec3,
     /// Unit vector from a to b.
     pub along: DVec3,
-    /// Unit vector in the plane, across ab, to the side of c.
+    /// Unit vector in the plane, perpendicular to ab, towards c.
     pub across: DVec3,
     /// Unit normal.
     pub normal: DVec3,
-    /// Length of ab, the longest side (m).
+    /// Length of ab, the longest edge (m).
     pub length: f64,
-    /// Corner c along and across ab (m).
+    /// Coordinates of vertex c along and across ab (m).
     pub apex: [f64; 2],
     /// 1/|ac|² and 1/|bc|² (m⁻²).
     inverse: [f64; 2],
 }
 
-/// The closest point of a triangle, seen from a point.
+/// The point of a triangle closest to a query point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Foot {
-    /// What it lies on.
+pub(super) struct ClosestPoint {
+    /// The feature on which it lies.
     pub feature: Feature,
-    /// From it to the point, along, across and normal (m).
+    /// The vector from it to the query point, in the local frame (m).
     pub offset: DVec3,
     /// The squared distance (m²).
     pub squared: f64,
 }
 
-/// The unit vector of any vector that is not zero, however small.
+/// The unit vector along a vector, without underflow; zero for the zero vector.
 fn direction(v: DVec3) -> DVec3 {
     let size = v.abs().max_element();
     if size == 0.0 {
         return DVec3::ZERO;
     }
-    // divided, not multiplied by the inverse: what is along an axis stays so to the bit
+    // division, not multiplication by the inverse, keeps vectors along an axis exact
     let v = v / size;
     v / v.length()
 }
 
 impl Frame {
-    /// Which corner comes first: the one that the longest side starts from.
+    /// The vertex at which the longest edge starts.
     pub fn first_corner(corners: [DVec3; 3]) -> usize {
         let length = |k: usize| (corners[(k + 1) % 3] - corners[k]).length_squared();
         (1..3).fold(0, |best, k| if length(k) > length(best) { k } else { best })
     }
 
-    /// The frame of a triangle whose longest side is from the first to the second corner.
-    pub fn of([a, b, c]: [DVec3; 3]) -> Self {
+    /// The frame of a triangle whose longest edge runs from the first to the second vertex.
+    pub fn new([a, b, c]: [DVec3; 3]) -> Self {
         let along = direction(b - a);
         let side = c - a;
-        // made orthogonal twice: once leaves the rounding of a long thin triangle
+        // orthogonalised twice, because of rounding in long thin triangles
         let once = direction(side - along * along.dot(side));
         let twice = direction(once - along * along.dot(once));
         let across = if twice == DVec3::ZERO { along.any_orthonormal_vector() } else { twice };
-        // in a plane of two axes the product of two sides is exact, that of two unit vectors is not
+        // for triangles in a coordinate plane the product of two edges is exact, that of two unit vectors is not
         let normal = direction((b - a).cross(side));
-        let is_thin = along.cross(side).length() < STOUT * along.dot(b - a);
+        let is_thin = along.cross(side).length() < THIN * along.dot(b - a);
         let (across, normal) =
             if is_thin { (across, along.cross(across)) } else { (normal.cross(along), normal) };
         let length = along.dot(b - a);
@@ -92,41 +93,41 @@ impl Frame {
         Self { origin: a, along, across, normal, length, apex, inverse }
     }
 
-    /// The triangle's area (m²).
+    /// The area (m²).
     pub fn area(&self) -> f64 {
         0.5 * self.length * self.apex[1]
     }
 
-    /// The corners (m), to rounding.
+    /// The vertices (m), up to rounding.
     pub fn corners(&self) -> [DVec3; 3] {
         let b = self.origin + self.along * self.length;
         let c = self.origin + self.along * self.apex[0] + self.across * self.apex[1];
         [self.origin, b, c]
     }
 
-    /// A point seen in the frame (m).
+    /// The local coordinates of a point (m).
     #[inline(always)]
     pub fn local(&self, point: DVec3) -> DVec3 {
-        self.turned(point - self.origin)
+        self.local_vector(point - self.origin)
     }
 
-    /// A vector seen in the frame.
+    /// A vector transformed to the local frame.
     #[inline(always)]
-    pub fn turned(&self, v: DVec3) -> DVec3 {
+    fn local_vector(&self, v: DVec3) -> DVec3 {
         DVec3::new(v.dot(self.along), v.dot(self.across), v.dot(self.normal))
     }
 
-    /// A vector of the frame seen from outside.
+    /// A vector transformed from the local frame.
     #[inline(always)]
-    pub fn turned_back(&self, v: DVec3) -> DVec3 {
+    pub fn world_vector(&self, v: DVec3) -> DVec3 {
         self.along * v.x + self.across * v.y + self.normal * v.z
     }
 
-    /// Whether a point of the plane lies in the triangle, or out of it by no more than `slack` (m).
+    /// Whether a point of the plane is in the triangle, or outside by at most `slack` (m).
     #[inline(always)]
     pub fn covers(&self, x: f64, y: f64, slack: f64) -> bool {
         let [cx, cy] = self.apex;
-        // sides are at most as long as ab
+        // no edge is longer than ab
         let slack_area = slack * self.length;
         y >= -slack
             && x * cy - y * cx >= -slack_area
@@ -135,16 +136,17 @@ impl Frame {
 
     /// The closest point, with the arithmetic of [`Group::squared`].
     #[inline(always)]
-    pub fn foot(&self, point: DVec3) -> Foot {
+    pub fn closest_point(&self, point: DVec3) -> ClosestPoint {
         let p = self.local(point);
         let [cx, cy] = self.apex;
         let (bx, px) = (cx - self.length, p.x - self.length);
         let height = p.z * p.z;
         let inside = p.y > 0.0 && p.x * cy - p.y * cx > 0.0 && bx * p.y - cy * px > 0.0;
         if inside {
-            return Foot { feature: FACE, offset: DVec3::new(0.0, 0.0, p.z), squared: height };
+            let offset = DVec3::new(0.0, 0.0, p.z);
+            return ClosestPoint { feature: FACE, offset, squared: height };
         }
-        // the foot on each side: how far along, and from it to the point
+        // the closest point of each edge: its parameter, and the offset from it
         let ab = p.x.max(0.0).min(self.length);
         let ca = ((p.x * cx + p.y * cy) * self.inverse[0]).clamp(0.0, 1.0);
         let bc = ((px * bx + p.y * cy) * self.inverse[1]).clamp(0.0, 1.0);
@@ -158,17 +160,17 @@ impl Frame {
             let squared = x * x + y * y;
             if squared < best.0 {
                 let feature = match along {
-                    0.0 => CORNER + side,
-                    1.0 => CORNER + (side + 1) % 3,
-                    _ => SIDE + side,
+                    0.0 => VERTEX + side,
+                    1.0 => VERTEX + (side + 1) % 3,
+                    _ => EDGE + side,
                 };
                 best = (squared, feature, DVec3::new(x, y, p.z));
             }
         }
-        Foot { feature: best.1, offset: best.2, squared: best.0 + height }
+        ClosestPoint { feature: best.1, offset: best.2, squared: best.0 + height }
     }
 
-    /// The solid angle of the triangle seen from a point, positive from behind.
+    /// The solid angle of the triangle seen from a point, positive on the inner side.
     ///
     /// Source: A. van Oosterom and J. Strackee, IEEE Trans. Biomed. Eng. 30 (1983) 125.
     pub fn solid_angle(&self, point: DVec3) -> f64 {
@@ -180,7 +182,7 @@ impl Frame {
     }
 }
 
-/// Four triangles side by side; where there are fewer, the first fills up.
+/// Four triangles in SIMD layout; missing ones repeat the first.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Group {
@@ -196,13 +198,13 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// The group of one to four triangles with their indices.
-    pub fn of(members: &[(u32, Frame)]) -> Self {
+    /// A group of one to four triangles with their indices.
+    pub fn new(members: &[(u32, Frame)]) -> Self {
         let lanes: [(u32, Frame); WIDTH] =
             std::array::from_fn(|i| *members.get(i).unwrap_or(&members[0]));
-        let number = |of: &dyn Fn(&Frame) -> f64| std::array::from_fn(|i| of(&lanes[i].1));
-        let vector = |of: &dyn Fn(&Frame) -> DVec3| {
-            std::array::from_fn(|axis| std::array::from_fn(|i| of(&lanes[i].1)[axis]))
+        let number = |field: &dyn Fn(&Frame) -> f64| std::array::from_fn(|i| field(&lanes[i].1));
+        let vector = |field: &dyn Fn(&Frame) -> DVec3| {
+            std::array::from_fn(|axis| std::array::from_fn(|i| field(&lanes[i].1)[axis]))
         };
         Self {
             origin: vector(&|t| t.origin),
@@ -237,7 +239,7 @@ impl Group {
         let zero = f64x4::splat(simd, 0.0);
         let one = f64x4::splat(simd, 1.0);
 
-        // into the frame
+        // local coordinates
         let [x, y, z] = point;
         let away = [
             x - load(simd, &self.origin[0]),
@@ -251,7 +253,7 @@ impl Group {
         let (cx, cy) = (load(simd, &self.apex[0]), load(simd, &self.apex[1]));
         let (bx, px) = (cx - length, x - length);
 
-        // to each side, and whether the face is closer
+        // distance to each edge, and whether the face is closer
         let ab = x.max(zero).min(length);
         let ca = ((x * cx + y * cy) * load(simd, &self.inverse[0])).max(zero).min(one);
         let bc = ((px * bx + y * cy) * load(simd, &self.inverse[1])).max(zero).min(one);

@@ -1,79 +1,53 @@
 //! Drag on a body whose mass is not carried by equal particles.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
-use super::Glide;
-use crate::shape::{ParticleMoments, PrincipalAxes, Shape, diagonalise};
+use super::glide::Glide;
+use crate::shape::{MassScaledForm, Shape, diagonalise};
 
-/// The six motions of a body that drag only slows down, each at its own rate.
+/// The six modes of motion that drag damps independently, each at its own rate.
 ///
 /// Drag alone changes the velocities linearly: M v' = −c (N v + ω × S), I ω' = −c (S × v + G ω). With the
-/// velocities scaled by √M and √I the matrix is symmetric and constant in the body's principal axes;
-/// its eigenvectors are these motions.
+/// velocities scaled by √M and √I the matrix is symmetric, and it is constant in the body's principal axes.
+/// Its eigenvectors are the modes.
 #[derive(Clone, Debug)]
 pub struct DragModes {
     /// √M.
     root_mass: f64,
     /// √I by principal axis, 0 where there is no inertia.
     root_inertia: DVec3,
-    /// Its inverse, 0 where there is no inertia.
+    /// 1/√I by principal axis, 0 where there is no inertia.
     inverse_root_inertia: DVec3,
-    /// Rates for c = 1 (1/(N·s/m) · 1/s).
+    /// Rates for c = 1 N·s/m (1/s).
     rates: [f64; 6],
-    /// One mode a row.
+    /// The modes, one per row.
     modes: [[f64; 6]; 6],
 }
 
 impl DragModes {
-    /// Of a body of `mass` (kg); `None` where equal particles carry the mass and both momenta
-    /// decay at one rate.
+    /// The modes of a body of `mass` (kg); `None` where equal particles carry the mass, so that both
+    /// momenta decay at one rate.
     pub fn of(shape: &Shape, mass: f64) -> Option<Self> {
         let moments = shape.moments();
-        (!moments.carry_mass).then(|| Self::of_moments(moments, shape.principal(), mass))
-    }
-
-    /// Of a body of `mass` (kg) whose particles feel drag as `moments` say.
-    pub(crate) fn of_moments(
-        moments: &ParticleMoments,
-        principal: &PrincipalAxes,
-        mass: f64,
-    ) -> Self {
-        let axes = principal.axes;
-        let inertia = principal.moments * mass;
-        let root_inertia = DVec3::new(inertia.x.sqrt(), inertia.y.sqrt(), inertia.z.sqrt());
-        let inverse = root_inertia.to_array().map(|r| if r > 0.0 { 1.0 / r } else { 0.0 });
-        let root_mass = mass.sqrt();
-        let s = axes.transpose() * moments.first;
-        let g = axes.transpose() * moments.second * axes;
-        let cross = DMat3::from_cols(
-            DVec3::new(0.0, s.z, -s.y),
-            DVec3::new(-s.z, 0.0, s.x),
-            DVec3::new(s.y, -s.x, 0.0),
-        );
-        let mut matrix = [[0.0; 6]; 6];
-        for i in 0..3 {
-            matrix[i][i] = moments.count / mass;
-            for j in 0..3 {
-                matrix[3 + i][3 + j] = g.col(j)[i] * inverse[i] * inverse[j];
-                matrix[3 + i][j] = cross.col(j)[i] * inverse[i] / root_mass;
-                matrix[j][3 + i] = matrix[3 + i][j];
-            }
+        if moments.carry_mass {
+            return None;
         }
-        let (rates, modes) = diagonalise(matrix);
-        let inverse_root_inertia = DVec3::from_array(inverse);
-        Self { root_mass, root_inertia, inverse_root_inertia, rates, modes }
+        let form = MassScaledForm::new(moments, shape.principal(), mass);
+        let (rates, modes) = diagonalise(form.matrix);
+        let MassScaledForm { root_mass, root_inertia, inverse_root_inertia, .. } = form;
+        Some(Self { root_mass, root_inertia, inverse_root_inertia, rates, modes })
     }
 
-    /// The fastest rate for c = 1 (1/kg).
+    /// The largest rate for c = 1 N·s/m, over all modes (1/kg).
     pub fn fastest(&self) -> f64 {
         self.rates.iter().fold(0.0, |m, &rate| m.max(rate))
     }
 
-    /// Lets gravity and drag with coefficient `c` act for `time` on velocity (m/s) and angular
-    /// momentum (kg·m²/s), with `gravity` (m/s²), all in principal axes and none of them turning;
-    /// returns the energy that drag takes (J).
+    /// Advances velocity (m/s) and angular momentum (kg·m²/s) by `time` (s) under gravity (m/s²) and drag
+    /// with coefficient `c` (N·s/m), all in principal axes, at a fixed orientation. Returns the energy lost
+    /// to drag (J).
     ///
-    /// Each mode is a glide of its own: a' = b − c λ a, with b its share of gravity.
+    /// The amplitude a of each mode obeys a' = b − c λ a, with b the component of gravity along the mode.
     pub fn fall(
         &self,
         velocity: &mut DVec3,
@@ -83,15 +57,15 @@ impl DragModes {
         time: f64,
     ) -> f64 {
         let w = *momentum * self.inverse_root_inertia;
-        let (v, pull) = (*velocity * self.root_mass, gravity * self.root_mass);
+        let (v, weight) = (*velocity * self.root_mass, gravity * self.root_mass);
         let motion = [v.x, v.y, v.z, w.x, w.y, w.z];
-        let pull = [pull.x, pull.y, pull.z, 0.0, 0.0, 0.0];
+        let weight = [weight.x, weight.y, weight.z, 0.0, 0.0, 0.0];
         let mut change = [0.0; 6];
         let mut loss = 0.0;
         for (rate, mode) in self.rates.iter().zip(&self.modes) {
-            let along =
+            let component =
                 |vector: &[f64; 6]| -> f64 { mode.iter().zip(vector).map(|(m, y)| m * y).sum() };
-            let (a, b) = (DVec3::X * along(&motion), DVec3::X * along(&pull));
+            let (a, b) = (DVec3::X * component(&motion), DVec3::X * component(&weight));
             let glide = Glide::new(time, c * rate);
             loss += glide.loss(a, b);
             let (_, end) = glide.advance(a, b);

@@ -1,10 +1,14 @@
-//! Exact solutions of a body that touches nothing.
+//! Exact solutions for a body in free flight: gravity, linear drag, and free rotation.
 
 mod drag_modes;
 mod free_rotation;
 mod glide;
-mod small_turn;
+mod small_rotation;
+#[cfg(test)]
+mod small_rotation_tests;
+mod turn;
 
 pub use drag_modes::DragModes;
-pub use free_rotation::{Turn, free_rotation};
+pub use free_rotation::free_rotation;
 pub use glide::Glide;
+pub use turn::Turn;

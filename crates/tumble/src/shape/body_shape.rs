@@ -1,14 +1,18 @@
-//! A shape: everything about a body that does not depend on its mass or its motion.
+//! The shape of a body: everything that does not depend on its mass or its motion.
 
 use glam::{DMat3, DVec3};
 
-use super::areas::{Cover, Shares};
-use super::mass::{MassProperties, PrincipalAxes, inertia_from_second_moment, outer};
-use super::{Mesh, OpenMesh, Particles, SampleError, Sampling, ShellError};
+use super::area_weights::{AreaWeights, ParticleSource};
+use super::integrals::{OpenMesh, ShellError};
+use super::mass::{MassProperties, PrincipalAxes};
+use super::mesh::Mesh;
+use super::moments::ParticleMoments;
+use super::particles::Particles;
+use super::sampling::{SampleError, Sampling};
 
-/// Particles and mass distribution of a body, shared by all bodies that look alike.
+/// Particles and mass distribution of a body; several bodies may share one shape.
 ///
-/// The body frame has its origin at the centre of mass and the axes of the input coordinates.
+/// The body frame has its origin at the centre of mass, and its axes are those of the input coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
     pub(super) particles: Particles,
@@ -18,52 +22,39 @@ pub struct Shape {
     principal: PrincipalAxes,
     moments: ParticleMoments,
     radius: f64,
-    pub(super) cover: Cover,
-    pub(super) shares: Option<Shares>,
+    pub(super) particle_source: ParticleSource,
+    pub(super) area_weights: Option<AreaWeights>,
 }
 
-/// Sums over the particles that the closed forms of drag need.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ParticleMoments {
-    /// How many particles, N.
-    pub count: f64,
-    /// Σ rᵢ (m), zero where equal particles carry the mass.
-    pub first: DVec3,
-    /// Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) (m²).
-    pub second: DMat3,
-    /// Whether equal particles carry the mass, so that drag acts on both momenta at one rate.
-    pub carry_mass: bool,
-}
-
-/// How the mass of a body is spread.
+/// How the mass of a body is distributed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MassModel {
-    /// Equally over its particles.
+    /// In equal parts over the particles.
     #[default]
     Particles,
-    /// Evenly over its surface.
+    /// Uniformly over the surface of the mesh.
     Shell,
-    /// Evenly over the volume that its closed mesh encloses.
+    /// Uniformly over the volume enclosed by the mesh, which must be closed.
     Solid,
 }
 
 /// Why a shape cannot be made.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShapeError {
-    /// There is no particle.
+    /// There are no particles.
     NoParticles,
-    /// A particle has a coordinate that is NaN or infinite.
+    /// A coordinate of a particle is NaN or infinite.
     NotFinite {
         /// Index of the particle, from 0.
         particle: usize,
     },
-    /// The mesh cannot be sampled as asked.
+    /// The mesh cannot be sampled.
     Sample(SampleError),
-    /// A solid needs a closed mesh, and this one is not.
+    /// [`MassModel::Solid`] needs a closed mesh.
     Open(OpenMesh),
-    /// A shell needs triangles with an area, and there are none.
+    /// [`MassModel::Shell`] needs triangles with a nonzero area.
     Shell(ShellError),
-    /// The particles are so far apart that their inertia overflows a double.
+    /// The inertia overflows a double.
     TooLarge,
 }
 
@@ -91,34 +82,34 @@ impl std::fmt::Display for ShapeError {
 impl std::error::Error for ShapeError {}
 
 impl Shape {
-    /// A shape whose mass sits in equal particles at `places` (m), in any frame.
+    /// A shape with equal masses at `places` (m), given in any frame.
     ///
     /// # Errors
-    /// [`ShapeError`] when there is no particle, or one is not finite.
+    /// [`ShapeError`] if there are no particles, or a coordinate is not finite.
     pub fn of_particles(places: &[DVec3]) -> Result<Self, ShapeError> {
         Self::with_surface(places, Mesh::default())
     }
 
-    /// As [`Shape::of_particles`], with a surface (same frame as `places`) to draw.
+    /// As [`Shape::of_particles`], with a surface mesh in the same frame.
     ///
     /// # Errors
-    /// [`ShapeError`] when there is no particle, or one is not finite.
+    /// [`ShapeError`] if there are no particles, or a coordinate is not finite.
     pub fn with_surface(places: &[DVec3], surface: Mesh) -> Result<Self, ShapeError> {
         let mass = MassProperties::of_particles(places, 1.0 / places.len().max(1) as f64);
         Self::with_mass(places, surface, mass.centre, mass.inertia, true)
     }
 
-    /// A shape from a mesh: which of its points become particles, and how its mass is spread.
+    /// A shape from a mesh, with particles from `sampling` and mass distributed by `mass_model`.
     ///
     /// # Errors
-    /// [`ShapeError`] when the mesh cannot be sampled so, or cannot carry its mass so.
+    /// [`ShapeError`] if the mesh does not suit the sampling or the mass model.
     pub fn of_mesh(
         mesh: &Mesh,
         sampling: Sampling,
         mass_model: MassModel,
     ) -> Result<Self, ShapeError> {
         let shape = Self::of_sampled_mesh(mesh, sampling, mass_model)?;
-        Ok(Self { cover: sampling.into(), ..shape })
+        Ok(Self { particle_source: sampling.into(), ..shape })
     }
 
     fn of_sampled_mesh(
@@ -136,13 +127,13 @@ impl Shape {
         Self::of_distribution(&places, mesh.clone(), integrals.centre, gyration)
     }
 
-    /// A shape whose mass is spread otherwise than over its particles: a shell, a solid.
+    /// A shape whose mass distribution is independent of its particles, such as a shell or a solid.
     ///
     /// `centre` is the centre of mass (m), `gyration` the inertia tensor about it for unit mass
     /// (I₀/M, m²), both in the frame of `places`.
     ///
     /// # Errors
-    /// [`ShapeError`] when there is no particle, or one is not finite.
+    /// [`ShapeError`] if there are no particles, or a number is not finite.
     pub fn of_distribution(
         places: &[DVec3],
         surface: Mesh,
@@ -168,7 +159,7 @@ impl Shape {
         if !centre.is_finite() || !gyration.is_finite() {
             return Err(ShapeError::TooLarge);
         }
-        // what the rounding of the coordinates can feign as inertia, seen as a length squared
+        // rounding of the coordinates may appear as inertia of up to this length squared
         let largest = places.iter().fold(0.0f64, |m, p| m.max(p.abs().max_element()));
         let rounding = 16.0 * f64::EPSILON * largest;
         let particles = Particles::new(places.iter().map(|&p| p - centre));
@@ -177,28 +168,28 @@ impl Shape {
         }
         Ok(Self {
             principal: PrincipalAxes::of(gyration, rounding * rounding),
-            moments: ParticleMoments::of(&particles, carry_mass),
+            moments: ParticleMoments::new(&particles, carry_mass),
             radius: particles.iter().fold(0.0, |m: f64, r| m.max(r.length())),
             particles,
             surface,
             centre,
             gyration,
-            cover: Cover::Bare,
-            shares: None,
+            particle_source: ParticleSource::Points,
+            area_weights: None,
         })
     }
 
-    /// The particles' places rᵢ in the body frame (m).
+    /// The particles, with positions rᵢ in the body frame (m).
     pub fn particles(&self) -> &Particles {
         &self.particles
     }
 
-    /// The surface to draw, in the body frame (m); empty for bare particles.
+    /// The surface mesh in the body frame (m); empty for points without a mesh.
     pub fn surface(&self) -> &Mesh {
         &self.surface
     }
 
-    /// Where the centre of mass was in the frame of the input (m).
+    /// The centre of mass in the frame of the input (m).
     pub fn centre(&self) -> DVec3 {
         self.centre
     }
@@ -213,27 +204,14 @@ impl Shape {
         &self.principal
     }
 
-    /// Sums over the particles that drag needs.
+    /// Sums over the particles, for the closed forms of drag.
     pub fn moments(&self) -> &ParticleMoments {
         &self.moments
     }
 
-    /// Distance of the farthest particle from the centre of mass (m).
+    /// The distance of the farthest particle from the centre of mass (m).
     pub fn radius(&self) -> f64 {
         self.radius
-    }
-}
-
-impl ParticleMoments {
-    fn of(particles: &Particles, carry_mass: bool) -> Self {
-        let first = if carry_mass { DVec3::ZERO } else { particles.iter().sum() };
-        let second = particles.iter().fold(DMat3::ZERO, |sum, r| sum + outer(r, r));
-        Self {
-            count: particles.len() as f64,
-            first,
-            second: inertia_from_second_moment(second),
-            carry_mass,
-        }
     }
 }
 
@@ -242,7 +220,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn coincident_particles_away_from_the_origin_do_not_rotate() {
+    fn coincident_particles_have_no_inertia_anywhere() {
         let places = [DVec3::new(0.1, 0.2, 0.3); 7];
         let shape = Shape::of_particles(&places).unwrap();
         assert_eq!(shape.principal().rotation_count(), 0);
@@ -250,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_of_particles_rotates_about_all_axes() {
+    fn particles_in_a_plane_have_inertia_about_all_axes() {
         let places: Vec<_> =
             (0..9).map(|i| DVec3::new(f64::from(i % 3), f64::from(i / 3), 1.0)).collect();
         let shape = Shape::of_particles(&places).unwrap();
@@ -260,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn tiny_and_huge_bodies_keep_their_axes() {
+    fn bodies_of_any_size_have_inertia_about_all_axes() {
         for scale in [1e-100, 1e-6, 1.0, 1e6, 1e100] {
             let places = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO].map(|p| p * scale);
             let shape = Shape::of_particles(&places).unwrap();

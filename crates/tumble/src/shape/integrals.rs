@@ -1,33 +1,34 @@
-//! Mass integrals of a triangle mesh: of the solid that it bounds, and of its surface as a shell.
+//! Mass integrals of a triangle mesh, as a solid or as a shell.
 //!
-//! A simplex with a corner at the origin and the others at aᵢ integrates linear and quadratic functions
-//! exactly from its corners: with s = Σ aᵢ,
+//! Linear and quadratic functions over a simplex with corners aᵢ and possibly the origin have exact
+//! integrals in terms of the corners: with s = Σ aᵢ,
 //!
 //! - tetrahedron (0, a, b, c), d = a·(b × c): ∫ dV = d/6, ∫ r dV = d s/24,
 //!   ∫ r rᵀ dV = d (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/120
 //! - triangle (a, b, c) of area A, wherever it lies: ∫ r dA = A s/3,
 //!   ∫ r rᵀ dA = A (a aᵀ + b bᵀ + c cᵀ + s sᵀ)/12
 //!
-//! The sum over tetrahedra from one origin to each triangle, signed by d, gives a closed mesh its solid.
+//! For a closed mesh, the integrals over the solid are sums over the tetrahedra from one origin to each
+//! triangle, signed by d.
 //! Source: J. Blow and A. J. Binstock, "How to find the inertia tensor (or other mass properties) of a 3D
 //! solid body represented by a triangle mesh" (2004); F. Tonon, "Explicit exact formulas for the 3-D
 //! tetrahedron inertia tensor in terms of its vertex coordinates", J. Math. Stat. 1 (2005) 8.
 
-use super::Mesh;
-use super::closedness::Closedness;
 use glam::{DMat3, DVec3};
 
-/// Triangles whose sums are added before they join the whole: keeps rounding small on large meshes, and
-/// the order fixed.
+use super::mesh::Mesh;
+use super::watertight::Closedness;
+
+/// Triangles per partial sum; partial sums reduce rounding on large meshes.
 const CHUNK: usize = 1024;
 
-/// A measure below this part of what the mesh's size allows is rounding, not substance.
-pub(super) const NOTHING: f64 = 1e-14;
+/// An area or volume below this fraction of the bound from the mesh's size is zero up to rounding.
+pub(super) const NEGLIGIBLE: f64 = 1e-14;
 
-/// Meshes smaller or larger (m) would lose their fifth power to the range of doubles.
+/// Mesh sizes (m) whose fifth power is in the range of doubles.
 pub(super) const SIZES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
-/// Measure, centre and second moment of a body of uniform density.
+/// Measure, centre and second moment of a solid or shell of uniform density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integrals {
     /// Volume of a solid (m³) or area of a shell (m²).
@@ -47,16 +48,16 @@ impl Integrals {
     }
 }
 
-/// Why a mesh bounds no solid.
+/// Why a mesh does not bound a solid.
 #[derive(Clone, Debug, PartialEq)]
 pub enum OpenMesh {
-    /// It has no triangles, or only collapsed ones.
+    /// The mesh has no triangles, or only degenerate ones.
     NoTriangles,
-    /// Some edges are open or wound wrongly; the report names the first.
+    /// Some edges are open or wrongly wound.
     Edges(Closedness),
-    /// It is closed, but flat: the volume inside is zero to rounding.
+    /// The mesh is closed but flat: the enclosed volume is zero up to rounding.
     NoVolume,
-    /// It is smaller than 1e-60 m or larger than 1e60 m, beyond what doubles can integrate.
+    /// The mesh is smaller than 1e-60 m or larger than 1e60 m, beyond the range of doubles.
     OutOfRange {
         /// The longest edge of its bounding box (m).
         size: f64,
@@ -79,11 +80,11 @@ impl std::error::Error for OpenMesh {}
 /// Why a mesh has no surface to integrate over.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShellError {
-    /// It has no triangles.
+    /// The mesh has no triangles.
     NoTriangles,
-    /// Its triangles have no area beyond rounding.
+    /// The area of the triangles is zero up to rounding.
     NoArea,
-    /// It is smaller than 1e-60 m or larger than 1e60 m, beyond what doubles can integrate.
+    /// The mesh is smaller than 1e-60 m or larger than 1e60 m, beyond the range of doubles.
     OutOfRange {
         /// The longest edge of its bounding box (m).
         size: f64,
@@ -102,6 +103,7 @@ impl std::fmt::Display for ShellError {
 
 impl std::error::Error for ShellError {}
 
+/// Writes the message of the `OutOfRange` errors.
 pub(super) fn out_of_range(f: &mut std::fmt::Formatter<'_>, size: f64) -> std::fmt::Result {
     write!(
         f,
@@ -109,7 +111,7 @@ pub(super) fn out_of_range(f: &mut std::fmt::Formatter<'_>, size: f64) -> std::f
     )
 }
 
-/// The box around all triangles.
+/// The bounding box of the triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Bounds {
     pub min: DVec3,
@@ -117,7 +119,7 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// The middle (m); halved first, so that no finite box overflows.
+    /// The centre (m), computed without overflow.
     pub fn centre(&self) -> DVec3 {
         0.5 * self.min + 0.5 * self.max
     }
@@ -128,18 +130,18 @@ impl Bounds {
     }
 }
 
-/// Zeroth, first and second moment, not yet divided by the simplex's constants.
+/// Zeroth, first and second moment, without the constant factors of the simplex.
 #[derive(Clone, Copy, Debug, Default)]
 struct Moments {
     measure: f64,
-    /// Sum of the unsigned areas, to judge a volume by.
+    /// Sum of the unsigned areas, to compare a volume with.
     area: f64,
     first: DVec3,
     second: [DVec3; 3],
 }
 
 impl Moments {
-    /// Adds the simplex with corners a, b, c (and the origin, for a solid) of weight `measure`.
+    /// Adds the simplex with corners a, b, c (and the origin, for a solid) and this measure.
     fn add_simplex(&mut self, [a, b, c]: [DVec3; 3], measure: f64, area: f64) {
         let sum = a + b + c;
         self.measure += measure;
@@ -163,14 +165,14 @@ impl Moments {
     fn second_moment(&self, factor: f64) -> DMat3 {
         let [x, y, z] = self.second;
         let (xy, xz, yz) = (0.5 * (x.y + y.x), 0.5 * (x.z + z.x), 0.5 * (y.z + z.y));
-        // symmetric to the last bit, whatever the sums rounded to
+        // exactly symmetric
         let columns = [DVec3::new(x.x, xy, xz), DVec3::new(xy, y.y, yz), DVec3::new(xz, yz, z.z)];
         DMat3::from_cols(factor * columns[0], factor * columns[1], factor * columns[2])
     }
 }
 
 impl Mesh {
-    /// The box around the triangles; `None` if there are none with finite corners.
+    /// The bounding box of the triangles; `None` if there are none with finite corners.
     pub(super) fn bounds(&self) -> Option<Bounds> {
         let mut corners = self.triangles.iter().filter_map(|&t| self.corners(t)).flatten();
         let first = corners.next()?;
@@ -182,14 +184,14 @@ impl Mesh {
         Some(bounds)
     }
 
-    /// Sums the moments of all triangles about `origin`; `weigh` gives a triangle's measure and area.
-    fn moments(&self, origin: DVec3, weigh: impl Fn([DVec3; 3]) -> (f64, f64)) -> Moments {
+    /// Sums the moments of all triangles about `origin`; `measures` returns a triangle's measure and area.
+    fn moments(&self, origin: DVec3, measures: impl Fn([DVec3; 3]) -> (f64, f64)) -> Moments {
         let mut total = Moments::default();
         for chunk in self.triangles.chunks(CHUNK) {
             let mut part = Moments::default();
             for corners in chunk.iter().filter_map(|&t| self.corners(t)) {
                 let corners = corners.map(|v| v - origin);
-                let (measure, area) = weigh(corners);
+                let (measure, area) = measures(corners);
                 part.add_simplex(corners, measure, area);
             }
             total.add(&part);
@@ -197,15 +199,15 @@ impl Mesh {
         total
     }
 
-    /// Volume (m³), centre (m) and second moment (m⁵) of the solid that the mesh bounds, exact but for rounding.
+    /// Volume (m³), centre (m) and second moment (m⁵) of the solid bounded by the mesh, exact up to rounding.
     ///
-    /// The mesh may be wound inwards; the volume is positive all the same. Cavities count as such where their
-    /// surface is wound against the outer one. Parts that overlap count twice. Sums run about the bounding
-    /// box's centre and then about the centre of mass, so that a mesh far from the origin loses no more than
-    /// its coordinates have lost already: a size a and a distance d cost a relative error of about 2⁻⁵³ d/a.
+    /// The mesh may be wound inwards; the volume is positive in any case. Cavities are subtracted if their
+    /// surface is wound opposite to the outer one. Overlapping parts count twice. The sums are taken about
+    /// the centre of the bounding box and then about the centre of mass, so the relative error for a mesh of
+    /// size a at a distance d from the origin is that of its coordinates, about 2⁻⁵³ d/a.
     ///
     /// # Errors
-    /// [`OpenMesh`] where the mesh has no triangles, open or wrongly wound edges, no volume, or a size
+    /// [`OpenMesh`] if the mesh has no triangles, open or wrongly wound edges, no volume, or a size
     /// beyond the range of doubles.
     pub fn solid_integrals(&self) -> Result<Integrals, OpenMesh> {
         let bounds = self.bounds().ok_or(OpenMesh::NoTriangles)?;
@@ -221,17 +223,17 @@ impl Mesh {
             return Err(OpenMesh::OutOfRange { size });
         }
 
-        // volume and centre first: they tell the best origin for the second moment
-        let weigh = |[a, b, c]: [DVec3; 3]| (a.dot(b.cross(c)), double_area([a, b, c]));
+        // volume and centre first, since the second moment is taken about the centre
+        let measures = |[a, b, c]: [DVec3; 3]| (a.dot(b.cross(c)), double_area([a, b, c]));
         let origin = bounds.centre();
-        let about_box = self.moments(origin, weigh);
-        if about_box.measure.abs() <= NOTHING * size * about_box.area {
+        let about_box = self.moments(origin, measures);
+        if about_box.measure.abs() <= NEGLIGIBLE * size * about_box.area {
             return Err(OpenMesh::NoVolume);
         }
         let centre = origin + about_box.first / (4.0 * about_box.measure);
 
-        // the sign that makes the volume positive turns all moments of an inward mesh
-        let about_centre = self.moments(centre, weigh);
+        // all moments of a mesh wound inwards change sign
+        let about_centre = self.moments(centre, measures);
         let sign = about_box.measure.signum();
         Ok(Integrals {
             measure: sign * about_centre.measure / 6.0,
@@ -240,28 +242,28 @@ impl Mesh {
         })
     }
 
-    /// Area (m²), centre (m) and second moment (m⁴) of the mesh's surface, exact but for rounding.
+    /// Area (m²), centre (m) and second moment (m⁴) of the mesh's surface, exact up to rounding.
     ///
-    /// The mesh need not be closed, and its winding does not matter. A triangle that is there twice counts twice.
+    /// The mesh need not be closed, and its winding does not matter. Duplicate triangles count twice.
     ///
     /// # Errors
-    /// [`ShellError`] where the mesh has no triangles, no area, or a size beyond the range of doubles.
+    /// [`ShellError`] if the mesh has no triangles, no area, or a size beyond the range of doubles.
     pub fn shell_integrals(&self) -> Result<Integrals, ShellError> {
         let bounds = self.bounds().ok_or(ShellError::NoTriangles)?;
         let size = bounds.size();
-        // a size of zero is a lack of area, not of range
+        // a size of zero is reported as no area
         if size > 0.0 && !SIZES.contains(&size) {
             return Err(ShellError::OutOfRange { size });
         }
 
-        let weigh = |corners: [DVec3; 3]| (double_area(corners), 0.0);
+        let measures = |corners: [DVec3; 3]| (double_area(corners), 0.0);
         let origin = bounds.centre();
-        let about_box = self.moments(origin, weigh);
-        if about_box.measure <= NOTHING * size * size {
+        let about_box = self.moments(origin, measures);
+        if about_box.measure <= NEGLIGIBLE * size * size {
             return Err(ShellError::NoArea);
         }
         let centre = origin + about_box.first / (3.0 * about_box.measure);
-        let about_centre = self.moments(centre, weigh);
+        let about_centre = self.moments(centre, measures);
         Ok(Integrals {
             measure: 0.5 * about_centre.measure,
             centre,

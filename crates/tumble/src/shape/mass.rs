@@ -1,8 +1,8 @@
-//! Mass properties: line 1 of the basic system, and the principal axes that go with it.
+//! Mass properties (line 1 of the basic system) and principal axes.
 
 use glam::{DMat3, DVec3};
 
-/// Mass, centre of mass and inertia tensor of a set of particles or of a solid.
+/// Mass, centre of mass and inertia tensor of a set of particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassProperties {
     /// Mass M (kg).
@@ -14,15 +14,15 @@ pub struct MassProperties {
 }
 
 impl MassProperties {
-    /// Line 1: M = Σ mᵢ, x = Σ mᵢ xᵢ / M, I₀ = Σ mᵢ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ), for particles of equal
-    /// mass `particle_mass` (kg) at `positions` (m).
+    /// Line 1: M = Σ mᵢ, x = Σ mᵢ xᵢ / M, I₀ = Σ mᵢ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ).
     ///
-    /// Without particles all of it is zero.
+    /// The particles have equal masses `particle_mass` (kg) at `positions` (m). Without particles all
+    /// results are zero.
     pub fn of_particles(positions: &[DVec3], particle_mass: f64) -> Self {
         let count = positions.len().max(1) as f64;
-        // a first guess of the centre, then its correction: the sums stay accurate far from the origin
-        let guess = positions.iter().copied().sum::<DVec3>() / count;
-        let centre = guess + positions.iter().map(|&p| p - guess).sum::<DVec3>() / count;
+        // an estimate of the centre and its correction keep the sums accurate far from the origin
+        let estimate = positions.iter().copied().sum::<DVec3>() / count;
+        let centre = estimate + positions.iter().map(|&p| p - estimate).sum::<DVec3>() / count;
         let second =
             positions.iter().fold(DMat3::ZERO, |sum, &p| sum + outer(p - centre, p - centre));
         Self {
@@ -44,10 +44,10 @@ pub(crate) fn inertia_from_second_moment(second: DMat3) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(trace)) - second
 }
 
-/// An inertia tensor in its principal axes, with the axes that carry no inertia marked by a zero.
+/// The principal moments and axes of an inertia tensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalAxes {
-    /// Principal moments, ascending. A moment that is zero but for rounding is exactly 0.
+    /// Principal moments in ascending order. A moment that is zero up to rounding is exactly 0.
     pub moments: DVec3,
     /// The axes as columns, right-handed: I₀ = A diag(moments) Aᵀ.
     pub axes: DMat3,
@@ -57,9 +57,9 @@ impl PrincipalAxes {
     /// Diagonalises a symmetric tensor by cyclic Jacobi rotations (Golub & Van Loan, *Matrix
     /// Computations*, 8.5), which keep small eigenvalues accurate relative to the largest.
     ///
-    /// Moments below `1e-12` of the largest, or below `floor` (same unit as the tensor: what the
-    /// rounding of the particles' coordinates alone can produce), become exactly zero: a line of
-    /// particles has no inertia about itself, and nothing may spin it up about that axis.
+    /// Moments below `1e-12` of the largest, or below `floor`, become exactly zero. `floor` has the unit
+    /// of the tensor and is the inertia that rounding of the particles' coordinates can produce. Particles
+    /// on a line therefore have exactly no inertia about it, and no torque can spin them up.
     pub fn of(tensor: DMat3, floor: f64) -> Self {
         let (values, vectors) = diagonalise(tensor.to_cols_array_2d());
         let mut order = [0, 1, 2];
@@ -73,28 +73,28 @@ impl PrincipalAxes {
         Self { moments: DVec3::from_array(moments), axes }
     }
 
-    /// The inverse tensor, with zero along each axis that carries no inertia (the pseudo-inverse).
+    /// The pseudo-inverse of the tensor: zero along axes without inertia.
     pub fn inverse(&self) -> DMat3 {
         let inverse = self.moments.to_array().map(|m| if m > 0.0 { 1.0 / m } else { 0.0 });
         self.axes * DMat3::from_diagonal(DVec3::from_array(inverse)) * self.axes.transpose()
     }
 
-    /// How many axes the body can turn about: 3, 2 for particles on a line, 0 for a point.
+    /// The number of rotational degrees of freedom: 3, 2 for particles on a line, 0 for a point.
     pub fn rotation_count(&self) -> usize {
         self.moments.to_array().iter().filter(|&&m| m > 0.0).count()
     }
 }
 
-/// A principal moment below this part of the largest is rounding.
+/// A principal moment below this fraction of the largest counts as zero.
 const RELATIVE_ZERO: f64 = 1e-12;
 
-/// Eigenvalues and eigenvectors (one a row) of a symmetric matrix, by cyclic Jacobi rotations.
+/// Eigenvalues and eigenvectors (one per row) of a symmetric matrix, by cyclic Jacobi rotations.
 pub(crate) fn diagonalise<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
     let mut v = [[0.0; N]; N];
     for (i, row) in v.iter_mut().enumerate() {
         row[i] = 1.0;
     }
-    // a sweep squares the off-diagonal part: a few are enough, the bound is for NaN
+    // convergence is quadratic, so a few sweeps suffice; the limit is for NaN
     for _sweep in 0..16 {
         let mut done = true;
         for p in 0..N {
@@ -110,12 +110,12 @@ pub(crate) fn diagonalise<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[
     (std::array::from_fn(|i| a[i][i]), v)
 }
 
-/// One Jacobi rotation in the plane (p, q) that makes `a[p][q]` zero; `v` holds the vectors as rows.
+/// The Jacobi rotation in the plane (p, q) that makes `a[p][q]` zero; the rows of `v` are the vectors.
 fn rotate<const N: usize>(a: &mut [[f64; N]; N], v: &mut [[f64; N]; N], p: usize, q: usize) {
     let off = a[p][q];
     a[p][q] = 0.0;
     a[q][p] = 0.0;
-    // below rounding of both diagonal entries: nothing left to turn
+    // negligible beside both diagonal entries
     if a[p][p] + off == a[p][p] && a[q][q] + off == a[q][q] {
         return;
     }
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn two_particles_have_the_textbook_dumbbell_inertia() {
+    fn two_particles_have_the_inertia_of_a_dumbbell() {
         let points = [DVec3::new(11.0, 5.0, 5.0), DVec3::new(9.0, 5.0, 5.0)];
         let mass = MassProperties::of_particles(&points, 3.0);
         assert_eq!(mass.mass, 6.0);
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_diagonal_line_has_no_inertia_about_itself() {
+    fn particles_on_a_line_have_no_inertia_about_it() {
         let points: Vec<_> = (0..7).map(|i| DVec3::splat(0.1 * f64::from(i) + 3.0)).collect();
         let mass = MassProperties::of_particles(&points, 1.0);
         let axes = PrincipalAxes::of(mass.inertia, 0.0);
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn far_from_the_origin_the_inertia_stays() {
+    fn the_inertia_does_not_depend_on_the_distance_from_the_origin() {
         let corners = |at: f64| -> Vec<DVec3> {
             (0..8)
                 .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) + at)
@@ -179,7 +179,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn principal_axes_rebuild_the_tensor(
+        fn principal_axes_and_moments_reproduce_the_tensor(
             points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 4..20),
             scale in -8..8i32,
         ) {

@@ -1,4 +1,4 @@
-//! A triangle mesh: vertices, and triangles that index them.
+//! Indexed triangle meshes.
 
 use glam::DVec3;
 
@@ -11,12 +11,12 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Why a set of vertices and triangles is no mesh.
+/// Why vertices and triangles do not form a valid mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MeshError {
-    /// There is no vertex.
+    /// There are no vertices.
     Empty,
-    /// A vertex has a coordinate that is NaN or infinite.
+    /// A coordinate of a vertex is NaN or infinite.
     NotFinite {
         /// Index of the vertex, from 0.
         vertex: usize,
@@ -51,10 +51,10 @@ impl std::fmt::Display for MeshError {
 impl std::error::Error for MeshError {}
 
 impl Mesh {
-    /// Checks and keeps the vertices (m) and triangles.
+    /// A mesh of these vertices (m) and triangles, after checking them.
     ///
     /// # Errors
-    /// [`MeshError`] when there is no vertex, one is not finite, or a triangle is out of range.
+    /// [`MeshError`] if there are no vertices, a coordinate is not finite, or an index is out of range.
     pub fn new(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         if vertices.is_empty() {
             return Err(MeshError::Empty);

@@ -1,29 +1,33 @@
-//! What a body is made of: its mesh, its particles, its mass properties.
+//! The shape of a body: its mesh, its particles, its mass properties.
 
-mod areas;
-mod balls;
+mod area_weights;
 mod body_shape;
-mod closedness;
-mod descend;
 mod integrals;
 mod mass;
 mod mesh;
+mod moments;
 mod particles;
 mod primitive;
 mod sampling;
+mod sphere_union;
 mod tree;
+mod tree_sums;
+mod vertex_areas;
+mod watertight;
 
-pub use areas::AreaError;
-pub use balls::{BallsError, ball_integrals};
-pub use body_shape::{MassModel, ParticleMoments, Shape, ShapeError};
-pub(crate) use closedness::weld;
-pub use closedness::{Closedness, EdgeFault, FaultyEdge};
-pub(crate) use descend::RampSums;
+pub use body_shape::{MassModel, Shape, ShapeError};
 pub use integrals::{Integrals, OpenMesh, ShellError};
 pub(crate) use mass::diagonalise;
 pub use mass::{MassProperties, PrincipalAxes};
 pub use mesh::{Mesh, MeshError};
+pub(crate) use moments::MassScaledForm;
+pub use moments::ParticleMoments;
 pub use particles::Particles;
 pub use primitive::{Primitive, PrimitiveError};
 pub use sampling::{SampleError, Sampling};
+pub use sphere_union::{BallsError, ball_integrals};
 pub(crate) use tree::Ramp;
+pub(crate) use tree_sums::RampSums;
+pub use vertex_areas::AreaError;
+pub(crate) use watertight::weld;
+pub use watertight::{Closedness, EdgeFault, FaultyEdge};

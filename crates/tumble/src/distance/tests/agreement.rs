@@ -1,4 +1,6 @@
-//! Distance, sign, gradient and triangle: against other ways to find them.
+//! Distance, sign, gradient and closest triangle against independent computations.
+
+use fearless_simd::Level;
 
 use super::*;
 
@@ -17,7 +19,7 @@ fn check(mesh: &Mesh, count: usize, seed: u64) {
         assert!((found.gradient.length() - 1.0).abs() < 1e-12, "{p}: {}", found.gradient);
         if plain > 1e-12 * size {
             assert_eq!(found.distance < 0.0, plain_inside(mesh, p), "{p}: {}", found.distance);
-            // the way to the closest point ends on the surface
+            // the closest point is on the surface
             let foot = p - found.gradient * found.distance;
             assert!(plain_distance(mesh, foot) <= 1e-13 * size, "{p}");
         }
@@ -32,7 +34,7 @@ fn primitives_agree_with_plain_loops() {
 }
 
 #[test]
-fn turned_and_distant_primitives_agree_with_plain_loops() {
+fn rotated_and_translated_primitives_agree_with_plain_loops() {
     for name in ["box", "tetrahedron", "t-handle", "knot"] {
         check(&moved(&primitive(name), |v| turn() * v), 300, 3);
         check(&moved(&primitive(name), |v| turn() * v + DVec3::new(1.0, -0.7, 0.3)), 300, 5);
@@ -48,7 +50,7 @@ proptest! {
     }
 
     #[test]
-    fn hints_and_levels_change_no_bit(seed in 1u64.., hints in prop::collection::vec(any::<u32>(), 8)) {
+    fn hints_simd_levels_and_the_grid_do_not_change_any_bit(seed in 1u64.., hints in prop::collection::vec(any::<u32>(), 8)) {
         let mesh = star(seed);
         let mut distance = SignedDistance::new(&mesh).unwrap();
         for p in points(&mesh, 60, seed) {
@@ -67,16 +69,16 @@ proptest! {
                     distance.level = level;
                     prop_assert_eq!(bits(distance.query(p, hints[0] % 320, within)), plain);
                 }
-                // the coarse grid neither
-                let grid = distance.coarse.take();
+                // nor does the grid
+                let grid = distance.grid.take();
                 prop_assert_eq!(bits(distance.query(p, NO_HINT, within)), plain);
-                distance.coarse = grid;
+                distance.grid = grid;
             }
         }
     }
 
     #[test]
-    fn powers_of_two_scale_to_the_bit(seed in 1u64.., exponent in -40i32..40) {
+    fn distances_scale_exactly_by_powers_of_two(seed in 1u64.., exponent in -40i32..40) {
         let mesh = star(seed);
         let factor = libm::ldexp(1.0, exponent);
         let scaled = SignedDistance::new(&moved(&mesh, |v| v * factor)).unwrap();
@@ -91,14 +93,14 @@ proptest! {
     }
 
     #[test]
-    fn the_gradient_is_that_of_the_distance(seed in 1u64.., p in vector()) {
+    fn the_gradient_agrees_with_finite_differences(seed in 1u64.., p in vector()) {
         let distance = SignedDistance::new(&star(seed)).unwrap();
         let at = |p: DVec3| distance.query(1.5 * p, NO_HINT, f64::INFINITY).unwrap();
         let here = at(p);
         let step = 1e-6;
         let slope = |axis: DVec3| (at(p + axis * step).distance - at(p - axis * step).distance) / (3.0 * step);
         let slope = DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z));
-        // where the closest point jumps there is none
+        // the gradient is discontinuous where the closest point jumps
         let near = [DVec3::X, DVec3::Y, DVec3::Z].iter().any(|&axis| {
             [axis, -axis].iter().any(|&a| at(p + a * step).gradient.distance(here.gradient) > 1e-3)
         });
@@ -107,7 +109,7 @@ proptest! {
     }
 
     #[test]
-    fn none_means_farther_outside_than_asked(seed in 1u64.., within in 0.0..1.0f64) {
+    fn the_result_is_none_beyond_the_limit(seed in 1u64.., within in 0.0..1.0f64) {
         let mesh = star(seed);
         let distance = SignedDistance::new(&mesh).unwrap();
         for p in points(&mesh, 60, seed) {
@@ -120,7 +122,7 @@ proptest! {
 }
 
 #[test]
-fn faces_of_a_turned_box_are_exact() {
+fn the_distance_to_a_rotated_box_is_exact() {
     let size = DVec3::new(0.3, 0.2, 0.1);
     let mesh = Primitive::Box { size, divisions: 3 }.mesh().unwrap();
     let distance = SignedDistance::new(&moved(&mesh, |v| turn() * v)).unwrap();
@@ -161,7 +163,7 @@ fn sphere_and_torus_agree_within_the_sagitta() {
 }
 
 #[test]
-fn points_on_the_surface_have_its_normal() {
+fn the_gradient_on_the_surface_is_its_normal() {
     let mesh = primitive("box");
     let distance = SignedDistance::new(&mesh).unwrap();
     for &corner in &mesh.vertices {
@@ -176,7 +178,7 @@ fn points_on_the_surface_have_its_normal() {
         assert!(found.distance.abs() < 1e-16, "{found:?}");
         assert!(found.gradient.distance(normal) < 1e-12, "{p}: {found:?}");
     }
-    // in a plane of two axes distance and normal are exact
+    // on a face in a coordinate plane distance and normal are exact
     let found = distance.query(DVec3::new(0.15, 0.02, 0.01), NO_HINT, 0.0).unwrap();
     assert_eq!((found.distance.to_bits(), found.gradient), (0, DVec3::X));
 }

@@ -1,21 +1,21 @@
-//! What a patch remembers changes no bit.
+//! Patches do not change any bit of the result.
 
 use super::*;
 
-/// A walk of many small and some large steps, from a point near the surface.
+/// A random walk of many small and some large steps.
 fn walk(start: DVec3, step: f64, seed: u64, mut visit: impl FnMut(DVec3)) {
     let mut state = seed | 1;
     let mut point = start;
     for i in 0..60 {
         visit(point);
         let cube = DVec3::from_array([(); 3].map(|()| random(&mut state) - 0.5));
-        // now and then it stays, and now and then it leaps
+        // including steps of zero length and large steps
         let size = [step, 0.0, 0.1 * step, step, 20.0 * step][i % 5];
         point += cube * size;
     }
 }
 
-/// Whether walks with patches see what they see without.
+/// Compares queries with and without patches along random walks.
 fn check(mesh: &Mesh, step: f64, seed: u64) -> Result<(), TestCaseError> {
     let distance = SignedDistance::new(mesh).unwrap();
     let (low, high) = distance.bounds();
@@ -42,12 +42,12 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn stars_are_the_same_nearby(seed in 1u64.., step in 1e-4..0.1f64) {
+    fn patches_do_not_change_queries_of_star_shaped_meshes(seed in 1u64.., step in 1e-4..0.1f64) {
         check(&star(seed), step, seed)?;
     }
 
     #[test]
-    fn primitives_are_the_same_nearby(
+    fn patches_do_not_change_queries_of_primitives(
         name in prop::sample::select(&Primitive::NAMES[..]),
         seed in 1u64..1 << 40,
         exponent in -5i32..0,
@@ -58,14 +58,14 @@ proptest! {
     }
 
     #[test]
-    fn tiny_and_huge_meshes_are_the_same_nearby(seed in 1u64.., exponent in -59i32..59) {
+    fn patches_do_not_change_queries_of_tiny_and_huge_meshes(seed in 1u64.., exponent in -59i32..59) {
         let mesh = moved(&star(seed), |v| v * libm::exp10(f64::from(exponent)));
         check(&mesh, 1e-3, seed)?;
     }
 }
 
 #[test]
-fn ties_between_triangles_are_the_same_nearby() {
+fn patches_do_not_change_the_triangle_in_ties() {
     // along the edges and over the corners of a box, where many triangles are equally close
     let mesh = Primitive::Box { size: DVec3::ONE, divisions: 8 }.mesh().unwrap();
     let distance = SignedDistance::new(&mesh).unwrap();
@@ -80,11 +80,11 @@ fn ties_between_triangles_are_the_same_nearby() {
 }
 
 #[test]
-fn a_patch_spares_most_searches_of_a_slow_point() {
+fn a_patch_saves_most_searches_for_a_slow_point() {
     let distance = SignedDistance::new(&primitive("knot")).unwrap();
     let (low, high) = distance.bounds();
     let step = 1e-3 * (high - low).max_element();
-    let (mut asked, mut searched) = (0, 0);
+    let (mut queries, mut searches) = (0, 0);
     for (i, start) in points(&primitive("knot"), 90, 1).into_iter().enumerate() {
         let mut patch = Patch::NONE;
         let mut state = i as u64 * 2 + 1;
@@ -92,11 +92,11 @@ fn a_patch_spares_most_searches_of_a_slow_point() {
         for _ in 0..40 {
             let before = format!("{patch:?}");
             if distance.query_near(point, &mut patch, f64::INFINITY).is_some() {
-                asked += 1;
-                searched += i32::from(format!("{patch:?}") != before);
+                queries += 1;
+                searches += i32::from(format!("{patch:?}") != before);
             }
             point += DVec3::from_array([(); 3].map(|()| random(&mut state) - 0.5)) * step;
         }
     }
-    assert!(searched * 4 < asked, "{searched} of {asked}");
+    assert!(searches * 4 < queries, "{searches} of {queries}");
 }

@@ -1,4 +1,4 @@
-//! Which meshes have an inside, how thick it is, and what passes through.
+//! Which meshes are accepted, their thickness, and segments that cross them.
 
 use super::*;
 
@@ -10,7 +10,7 @@ fn refusal(mesh: &Mesh) -> String {
     SignedDistance::new(mesh).unwrap_err().to_string()
 }
 
-/// The same distances, whatever the index of the triangle.
+/// Asserts equal distances and gradients; the triangles may differ.
 fn same(a: &SignedDistance, b: &SignedDistance, points: &[DVec3]) {
     for &p in points {
         let [a, b] = [a, b].map(|d| d.query(p, NO_HINT, f64::INFINITY).unwrap());
@@ -52,7 +52,7 @@ fn open_and_wrongly_wound_meshes_are_refused() {
 }
 
 #[test]
-fn a_mesh_wound_inwards_is_taken_the_other_way_round() {
+fn a_mesh_wound_inwards_is_reversed() {
     let mesh = primitive("knot");
     let mut inwards = mesh.clone();
     inwards.triangles.iter_mut().for_each(|t| t.swap(0, 1));
@@ -62,7 +62,7 @@ fn a_mesh_wound_inwards_is_taken_the_other_way_round() {
 }
 
 #[test]
-fn seams_and_collapsed_triangles_do_no_harm() {
+fn duplicate_vertices_and_degenerate_triangles_are_accepted() {
     let mesh = primitive("box");
     let mut soup = Mesh::default();
     for t in &mesh.triangles {
@@ -74,14 +74,14 @@ fn seams_and_collapsed_triangles_do_no_harm() {
     let found = distance(&soup);
     assert_eq!(found.triangle_count(), 12);
     same(&distance(&mesh), &found, &points(&mesh, 300, 1));
-    // every hint is allowed, those of triangles that do not count too
+    // every hint is valid, even that of an ignored triangle
     for hint in [0, 1, 23, 24, u32::MAX] {
         assert_eq!(found.query(DVec3::ZERO, hint, 0.0).unwrap().distance, -0.05);
     }
 }
 
 #[test]
-fn flat_triangles_on_an_edge_do_no_harm() {
+fn a_triangle_of_zero_height_does_not_change_the_distance() {
     // a tetrahedron of which one edge is split in one face only, and the gap closed by a triangle without height
     let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, 0.5 * DVec3::X];
     let whole = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
@@ -96,7 +96,7 @@ fn flat_triangles_on_an_edge_do_no_harm() {
 }
 
 #[test]
-fn long_thin_triangles_keep_their_distance() {
+fn the_sign_is_right_for_long_thin_triangles() {
     let mesh = moved(&primitive("knot"), |v| v * DVec3::new(1.0, 1e-6, 1e3));
     let found = distance(&mesh);
     let (low, high) = found.bounds();
@@ -110,7 +110,7 @@ fn long_thin_triangles_keep_their_distance() {
 }
 
 #[test]
-fn a_small_hole_keeps_inside_and_outside_apart() {
+fn a_small_hole_does_not_change_inside_and_outside() {
     let mesh = primitive("sphere");
     let mut holed = mesh.clone();
     let lost = holed.triangles.swap_remove(100).map(|i| mesh.vertices[i as usize]);
@@ -135,7 +135,7 @@ fn a_small_hole_keeps_inside_and_outside_apart() {
 }
 
 #[test]
-fn two_solids_that_share_an_edge_tell_inside() {
+fn the_sign_is_right_near_an_edge_shared_by_two_solids() {
     let cube = Primitive::Box { size: DVec3::ONE, divisions: 1 }.mesh().unwrap();
     let mut both = cube.clone();
     both.vertices.extend(cube.vertices.iter().map(|v| *v + DVec3::new(1.0, 1.0, 0.0)));
@@ -166,12 +166,12 @@ fn a_cavity_is_outside() {
 }
 
 #[test]
-fn thickness_is_that_of_the_solid() {
+fn the_thickness_of_simple_solids_is_right() {
     let thickness = |shape: Primitive| distance(&shape.mesh().unwrap()).thickness();
     let size = DVec3::new(0.3, 0.2, 0.1);
     let of_box = thickness(Primitive::Box { size, divisions: 4 });
     assert!((of_box - 0.1).abs() < 1e-12, "{of_box}");
-    // more triangles than are asked
+    // more triangles than are sampled
     let of_ball = thickness(Primitive::Sphere { radius: 0.15, subdivisions: 4 });
     assert!((of_ball - 0.3).abs() < 0.003, "{of_ball}");
     let of_torus = thickness(Primitive::Torus { radius: 0.1, tube_radius: 0.02, segments: 48 });
@@ -186,7 +186,7 @@ fn thickness_is_that_of_the_solid() {
 }
 
 #[test]
-fn segments_pass_through_where_they_meet_the_solid() {
+fn segments_that_cross_the_surface_are_found() {
     let mesh = moved(&primitive("torus"), |v| turn() * v);
     let found = distance(&mesh);
     let at = |x: f64, y: f64, z: f64| turn() * DVec3::new(x, y, z);
@@ -200,7 +200,7 @@ fn segments_pass_through_where_they_meet_the_solid() {
 }
 
 #[test]
-fn no_line_slips_between_two_triangles() {
+fn no_line_passes_between_two_triangles() {
     let mesh = moved(&primitive("sphere"), |v| turn() * v + 0.1);
     let found = distance(&mesh);
     for t in &mesh.triangles {
@@ -213,7 +213,7 @@ fn no_line_slips_between_two_triangles() {
 }
 
 #[test]
-fn strange_points_are_answered() {
+fn extreme_points_have_defined_results() {
     let found = distance(&primitive("box"));
     for p in [DVec3::NAN, DVec3::INFINITY, DVec3::new(0.0, f64::NEG_INFINITY, 0.0)] {
         assert_eq!(found.query(p, 0, f64::INFINITY), None);
@@ -229,8 +229,8 @@ fn strange_points_are_answered() {
 }
 
 #[test]
-fn the_tree_is_never_too_deep() {
-    // what waits in the tree fits, for any number of triangles: each level quarters the groups
+fn the_traversal_stack_is_large_enough_for_any_tree() {
+    // each level divides the number of groups by four
     let (mut groups, mut depth) = (u32::MAX, 0);
     while groups > 1 {
         groups = groups.div_ceil(2).div_ceil(2);

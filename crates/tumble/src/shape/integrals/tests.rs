@@ -1,6 +1,8 @@
+//! Moments of meshes against closed formulas.
+
 use super::*;
 use crate::shape::Primitive;
-use crate::shape::closedness::EdgeFault;
+use crate::shape::watertight::EdgeFault;
 use glam::DQuat;
 
 fn cuboid(size: DVec3) -> Mesh {
@@ -25,7 +27,7 @@ fn difference(a: DMat3, b: DMat3) -> f64 {
 }
 
 #[test]
-fn a_cube_has_the_textbook_moments() {
+fn a_solid_cube_has_the_textbook_moments() {
     let solid = cuboid(DVec3::ONE).solid_integrals().unwrap();
     assert_eq!(solid.measure, 1.0);
     assert_eq!(solid.centre, DVec3::ZERO);
@@ -34,7 +36,7 @@ fn a_cube_has_the_textbook_moments() {
 }
 
 #[test]
-fn a_tetrahedron_has_the_textbook_moments() {
+fn a_solid_tetrahedron_has_the_textbook_moments() {
     // with corners 0, x, y, z: V = 1/6, centre 1/4, ∫x² = 1/60, ∫xy = 1/120
     let vertices = vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
     let mesh = Mesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]).unwrap();
@@ -49,7 +51,7 @@ fn a_tetrahedron_has_the_textbook_moments() {
 }
 
 #[test]
-fn the_shell_of_a_cube_has_the_textbook_moments() {
+fn a_cubic_shell_has_the_textbook_moments() {
     // ∫x²: two faces at 1/4, four with 1/12
     let shell = cuboid(DVec3::ONE).shell_integrals().unwrap();
     assert!((shell.measure - 6.0).abs() < 1e-14);
@@ -59,7 +61,7 @@ fn the_shell_of_a_cube_has_the_textbook_moments() {
 }
 
 #[test]
-fn an_open_shell_and_one_wound_anyhow_weigh_the_same() {
+fn a_shell_may_be_open_and_its_winding_does_not_matter() {
     let mut mesh = cuboid(DVec3::new(1.0, 2.0, 3.0));
     let whole = mesh.shell_integrals().unwrap();
     mesh.triangles[3].swap(0, 1);
@@ -70,14 +72,14 @@ fn an_open_shell_and_one_wound_anyhow_weigh_the_same() {
 }
 
 #[test]
-fn far_from_the_origin_only_the_coordinates_lose_digits() {
-    // a power of two: the coordinates are exact, and so is the result
+fn far_from_the_origin_moments_are_as_accurate_as_the_coordinates() {
+    // shifted by powers of two: the coordinates are exact, and so is the result
     let shift = DVec3::new(1.0, -2.0, 0.5) * 2f64.powi(20);
     let solid = moved(cuboid(DVec3::ONE), DQuat::IDENTITY, shift).solid_integrals().unwrap();
     assert_eq!(solid.centre, shift);
     assert!(difference(solid.second_moment, cuboid_moment(DVec3::ONE)) < 1e-15);
 
-    // turned and 1e6 away: coordinates to 1e-10, moments to about that
+    // rotated and 1e6 m away: coordinates accurate to 1e-10 m, moments similarly
     let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
     let size = DVec3::new(0.3, 0.2, 0.1);
     let mesh = moved(cuboid(size), turn, DVec3::splat(1e6));
@@ -87,7 +89,7 @@ fn far_from_the_origin_only_the_coordinates_lose_digits() {
 }
 
 #[test]
-fn an_inward_mesh_has_the_same_solid() {
+fn a_mesh_wound_inwards_has_the_same_moments() {
     let mesh = cuboid(DVec3::new(1.0, 2.0, 3.0));
     let mut inward = mesh.clone();
     for t in &mut inward.triangles {
@@ -99,7 +101,7 @@ fn an_inward_mesh_has_the_same_solid() {
 }
 
 #[test]
-fn a_cavity_is_taken_away() {
+fn a_cavity_is_subtracted() {
     let mut mesh = cuboid(DVec3::splat(2.0));
     let hole = cuboid(DVec3::ONE);
     mesh.vertices.extend(&hole.vertices);
@@ -111,7 +113,7 @@ fn a_cavity_is_taken_away() {
 }
 
 #[test]
-fn an_open_mesh_is_refused_with_its_edges() {
+fn an_open_mesh_is_refused_and_its_edges_are_listed() {
     let mut mesh = cuboid(DVec3::ONE);
     mesh.triangles.pop();
     let error = mesh.solid_integrals().unwrap_err();
@@ -125,19 +127,19 @@ fn an_open_mesh_is_refused_with_its_edges() {
 }
 
 #[test]
-fn what_has_no_inside_or_no_area_is_refused() {
+fn meshes_without_volume_or_area_are_refused() {
     let cloud = Mesh::new(vec![DVec3::ZERO], vec![]).unwrap();
     assert_eq!(cloud.solid_integrals(), Err(OpenMesh::NoTriangles));
     assert_eq!(cloud.shell_integrals(), Err(ShellError::NoTriangles));
 
-    // a triangle and its back are closed but flat, even when turned
+    // a triangle and its reverse are closed but flat, in any orientation
     let corners =
         vec![DVec3::new(0.1, 0.2, 0.3), DVec3::new(1.3, 0.7, 0.1), DVec3::new(0.2, 0.9, 0.77)];
     let flat = Mesh::new(corners.clone(), vec![[0, 1, 2], [0, 2, 1]]).unwrap();
     assert_eq!(flat.solid_integrals(), Err(OpenMesh::NoVolume));
     assert!(flat.shell_integrals().is_ok());
 
-    // collinear corners have no area beyond rounding
+    // the area of collinear corners is zero up to rounding
     let line = vec![corners[0], corners[1], corners[0].lerp(corners[1], 0.3)];
     let line = Mesh::new(line, vec![[0, 1, 2]]).unwrap();
     assert_eq!(line.shell_integrals(), Err(ShellError::NoArea));
@@ -147,7 +149,7 @@ fn what_has_no_inside_or_no_area_is_refused() {
 }
 
 #[test]
-fn any_scale_gives_the_same_dimensionless_moments() {
+fn moments_scale_with_powers_of_the_size() {
     let mesh = Primitive::named("t-handle").unwrap().mesh().unwrap();
     let one = mesh.solid_integrals().unwrap();
     for scale in [1e-9, 1e-6, 1e6, 1e12] {
@@ -161,7 +163,7 @@ fn any_scale_gives_the_same_dimensionless_moments() {
 }
 
 #[test]
-fn sizes_beyond_doubles_are_refused_not_rounded() {
+fn sizes_beyond_the_range_of_doubles_are_refused() {
     for scale in [1e-80, 1e80, 1e300] {
         let mut mesh = cuboid(DVec3::ONE);
         mesh.vertices.iter_mut().for_each(|v| *v *= scale);

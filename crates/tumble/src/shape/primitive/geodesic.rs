@@ -1,6 +1,6 @@
 //! Shapes from regular solids: the geodesic sphere and the tetrahedron.
 
-use crate::shape::Mesh;
+use crate::shape::mesh::Mesh;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -49,7 +49,7 @@ fn icosahedron_vertices() -> Vec<DVec3> {
     .to_vec()
 }
 
-/// An icosahedron whose edges are halved `subdivisions` times, each new vertex moved onto the sphere.
+/// An icosahedron whose edges are halved `subdivisions` times, with each new vertex projected onto the sphere.
 pub(super) fn sphere(radius: f64, subdivisions: u32) -> Mesh {
     let mut vertices = icosahedron_vertices();
     let mut triangles = ICOSAHEDRON.to_vec();
@@ -64,7 +64,7 @@ pub(super) fn sphere(radius: f64, subdivisions: u32) -> Mesh {
 
 /// Splits each triangle into four at the middles of its edges.
 fn halve(vertices: &mut Vec<DVec3>, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
-    // looked up, never iterated: the order of vertices follows the triangles alone
+    // the map is never iterated, so the order of the vertices is deterministic
     let mut middles: HashMap<(u32, u32), u32> = HashMap::with_capacity(triangles.len() * 3 / 2);
     let mut middle = |a: u32, b: u32| {
         *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
@@ -81,7 +81,7 @@ fn halve(vertices: &mut Vec<DVec3>, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     quarters
 }
 
-/// A regular tetrahedron of this edge length: every other corner of a cube.
+/// A regular tetrahedron of this edge length, from alternate corners of a cube.
 pub(super) fn tetrahedron(size: f64) -> Mesh {
     let half_cube = size / 8.0f64.sqrt();
     let vertices = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]]

@@ -1,22 +1,21 @@
 //! A tube along a trefoil knot.
 //!
-//! The knot lies on a torus, so the torus's normal and its product with the tangent frame the tube all along
-//! without a twist to make up at the end.
+//! The knot lies on a torus. The normal of the torus and its cross product with the tangent form a frame along the
+//! tube that closes without twist.
 
-use super::PrimitiveError;
-use super::check::affordable;
-use crate::shape::Mesh;
+use super::error::{PrimitiveError, check_vertex_count};
+use crate::shape::mesh::Mesh;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_3, TAU};
 
-/// Radius of the torus's tube on which the knot lies, as a part of the torus's radius.
+/// Minor radius of the torus on which the knot lies, in units of its major radius.
 const COIL: f64 = 0.5;
 
-/// Largest radius of the tube, as a part of the torus's radius. Measured: strands of the curve come within
-/// 2 · 0.4158 of each other, and its least radius of curvature is 0.715.
+/// Largest radius of the tube, in units of the major radius of the torus. Measured: strands of the curve come within
+/// 2 · 0.4158 of each other, and its smallest radius of curvature is 0.715.
 pub(super) const MAX_TUBE: f64 = 0.41;
 
-/// Steps of the quadrature and of the integration per ring.
+/// Integration steps per ring.
 const STEPS: u32 = 16;
 
 /// |dc/dt| of the knot with R = 1.
@@ -32,9 +31,9 @@ fn length() -> f64 {
     TAU * (0..n).map(|i| speed(lobe * f64::from(i) / f64::from(n))).sum::<f64>() / f64::from(n)
 }
 
-/// Parameters that cut one of the three lobes, t from 0 to 2π/3, into `n` parts of equal length.
+/// Parameters that divide one of the three lobes, t from 0 to 2π/3, into `n` parts of equal length.
 ///
-/// The second half mirrors the first, so that the mesh keeps the knot's symmetry.
+/// The second half mirrors the first, so that the mesh has the symmetry of the knot.
 fn lobe_parameters(n: u32) -> Vec<f64> {
     let step = length() / 3.0 / f64::from(n) / f64::from(STEPS);
     let mut t = 0.0;
@@ -59,7 +58,7 @@ fn lobe_parameters(n: u32) -> Vec<f64> {
     (0..n).map(mirrored).collect()
 }
 
-/// Point of the knot, normal of the torus, and its product with the tangent, with R = 1.
+/// Point of the knot, normal of the torus, and unit cross product of tangent and normal, with R = 1.
 fn frame(t: f64) -> (DVec3, DVec3, DVec3) {
     let (sin3, cos3) = libm::sincos(3.0 * t);
     let (sin2, cos2) = libm::sincos(2.0 * t);
@@ -75,7 +74,7 @@ fn frame(t: f64) -> (DVec3, DVec3, DVec3) {
     (point, normal, across / across.length())
 }
 
-/// A tube of `segments` vertices around, and as far apart along it.
+/// The tube, with `segments` vertices around it and the same spacing along it.
 pub(super) fn trefoil(
     radius: f64,
     tube_radius: f64,
@@ -84,7 +83,7 @@ pub(super) fn trefoil(
     let around = f64::from(segments);
     let spacing = TAU * tube_radius / around;
     let per_lobe = (length() * radius / (3.0 * spacing)).round().max(8.0);
-    affordable("knot", 3.0 * per_lobe * around)?;
+    check_vertex_count("knot", 3.0 * per_lobe * around)?;
     let per_lobe = per_lobe as u32;
 
     let lobe = lobe_parameters(per_lobe);
@@ -106,7 +105,7 @@ pub(super) fn trefoil(
             let l = (k + 1) % segments;
             let [a, b] = [ring, next].map(|r| r * segments + k);
             let [c, d] = [ring, next].map(|r| r * segments + l);
-            // around × ahead points outwards, so the neighbour around comes first
+            // (around) × (along) points outwards, so the neighbour around comes first
             mesh.triangles.extend([[a, c, d], [a, d, b]]);
         }
     }

@@ -1,14 +1,13 @@
-//! Shapes with faces along the axes: the box and the T-handle, put together from rectangular grids.
+//! Shapes with axis-aligned faces, assembled from rectangular grids: the box and the T-handle.
 
-use super::PrimitiveError;
-use super::check::affordable;
-use crate::shape::Mesh;
-use crate::shape::closedness::weld;
+use super::error::{PrimitiveError, check_vertex_count};
+use crate::shape::mesh::Mesh;
+use crate::shape::watertight::weld;
 use glam::DVec3;
 
-/// `parts` equal parts of the way from `from` to `to`, both ends included and exact.
+/// Divides the interval from `from` to `to` into equal parts, with exact ends.
 ///
-/// Symmetric ends give symmetric places, to the last bit.
+/// A symmetric interval gives exactly symmetric values.
 fn divide(from: f64, to: f64, parts: u32) -> Vec<f64> {
     let n = f64::from(parts);
     let place = |i: u32| {
@@ -23,13 +22,13 @@ fn divide(from: f64, to: f64, parts: u32) -> Vec<f64> {
     (0..=parts).map(place).collect()
 }
 
-/// How many parts of about `spacing` a length has, at least one.
+/// The number of parts of about `spacing` in a length, at least one.
 fn parts(length: f64, spacing: f64) -> u32 {
     (length / spacing).round().max(1.0) as u32
 }
 
-/// Adds a grid in the plane where coordinate `axis` is `place`; `us` and `vs` are its lines along the two
-/// axes that follow cyclically.
+/// Adds a grid in the plane where coordinate `axis` equals `place`; `us` and `vs` are the grid lines along the
+/// next two axes, cyclically.
 fn add_patch(soup: &mut Mesh, axis: usize, place: f64, outward: f64, [us, vs]: [&[f64]; 2]) {
     let start = soup.vertices.len() as u32;
     for &u in us {
@@ -42,7 +41,7 @@ fn add_patch(soup: &mut Mesh, axis: usize, place: f64, outward: f64, [us, vs]: [
         }
     }
 
-    // u × v points along the axis; a face that looks the other way is wound the other way
+    // u × v points along the axis; a face with the opposite normal has the opposite winding
     let row = vs.len() as u32;
     for i in 0..us.len() as u32 - 1 {
         for j in 0..row - 1 {
@@ -54,8 +53,8 @@ fn add_patch(soup: &mut Mesh, axis: usize, place: f64, outward: f64, [us, vs]: [
     }
 }
 
-/// Joins vertices at equal coordinates and numbers them by first appearance.
-fn joined(soup: &Mesh) -> Mesh {
+/// Merges coincident vertices and numbers them by first appearance.
+fn merged(soup: &Mesh) -> Mesh {
     let first_of = weld(&soup.vertices);
     let mut number = vec![0u32; first_of.len()];
     let mut mesh = Mesh::default();
@@ -64,7 +63,7 @@ fn joined(soup: &Mesh) -> Mesh {
             number[index] = mesh.vertices.len() as u32;
             mesh.vertices.push(soup.vertices[index]);
         } else {
-            // the first of its kind came earlier, so it has its number
+            // the first of the coincident vertices already has its number
             number[index] = number[first as usize];
         }
     }
@@ -72,10 +71,10 @@ fn joined(soup: &Mesh) -> Mesh {
     mesh
 }
 
-/// A box around the origin, each edge in `divisions` parts.
+/// A box centred at the origin, each edge divided into `divisions` parts.
 pub(super) fn cuboid(size: DVec3, divisions: u32) -> Result<Mesh, PrimitiveError> {
     let n = f64::from(divisions);
-    affordable("box", 6.0 * n * n + 2.0)?;
+    check_vertex_count("box", 6.0 * n * n + 2.0)?;
 
     let half = 0.5 * size;
     let lines = [0, 1, 2].map(|axis| divide(-half[axis], half[axis], divisions));
@@ -86,10 +85,10 @@ pub(super) fn cuboid(size: DVec3, divisions: u32) -> Result<Mesh, PrimitiveError
             add_patch(&mut soup, axis, side * half[axis], side, [&lines[u], &lines[v]]);
         }
     }
-    Ok(joined(&soup))
+    Ok(merged(&soup))
 }
 
-/// A T of square section, its solid's centre at the origin.
+/// A T of square cross-section with its centre of mass at the origin.
 pub(super) fn t_handle(
     length: f64,
     width: f64,
@@ -99,16 +98,16 @@ pub(super) fn t_handle(
     let spacing = thickness / f64::from(divisions);
     let handle = width - thickness;
     let cells = (length + handle) / spacing + 4.0;
-    affordable("t-handle", 4.0 * cells * f64::from(divisions))?;
+    check_vertex_count("t-handle", 4.0 * cells * f64::from(divisions))?;
 
-    // heights from the handle's lower end; the centre is that of two rectangles of equal thickness
+    // heights above the handle's lower end; the centre is that of two rectangles of equal thickness
     let (bar_y, handle_y) = (handle + 0.5 * thickness, 0.5 * handle);
     let centre = (length * bar_y + handle * handle_y) / (length + handle);
     let bottom = -centre;
     let joint = handle - centre;
     let top = width - centre;
 
-    // grid lines; those of bar and handle agree where the two meet
+    // grid lines; those of bar and handle agree at the joint
     let (end, side) = (0.5 * length, 0.5 * thickness);
     let arm = parts(end - side, spacing);
     let left = divide(-end, -side, arm);
@@ -130,10 +129,10 @@ pub(super) fn t_handle(
         add_patch(&mut soup, 0, s * end, s, [&bar_lines, &depth]);
         add_patch(&mut soup, 0, s * side, s, [&handle_lines, &depth]);
     }
-    // from above, and from below: the handle's end and the two arms
+    // the top; and from below the handle's end and the two arms
     add_patch(&mut soup, 1, top, 1.0, [&depth, &bar_x]);
     add_patch(&mut soup, 1, bottom, -1.0, [&depth, &middle]);
     add_patch(&mut soup, 1, joint, -1.0, [&depth, &left]);
     add_patch(&mut soup, 1, joint, -1.0, [&depth, &right]);
-    Ok(joined(&soup))
+    Ok(merged(&soup))
 }

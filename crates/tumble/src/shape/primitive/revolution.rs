@@ -1,17 +1,16 @@
 //! Surfaces of revolution with evenly spread vertices.
 //!
-//! A profile, a chain of rings, turns about the y axis. Each ring has as many vertices as fit its
-//! circumference at the shape's spacing, in a multiple of six, so that no ring near the axis is crowded.
-//! A band of triangles closes the gap between two rings of any counts. The sixfold symmetry keeps centres of
-//! mass on the axis and principal axes along it.
+//! A profile curve is revolved about the y axis; each of its points becomes a ring of vertices. The number of
+//! vertices of a ring is its circumference over the spacing, rounded to a multiple of six, so that rings near the
+//! axis are not denser. A band of triangles joins two rings of any counts. The sixfold symmetry keeps the centre of
+//! mass on the axis and makes it a principal axis.
 
-use super::PrimitiveError;
-use super::check::{MAX_VERTICES, affordable};
-use crate::shape::Mesh;
+use super::error::{MAX_VERTICES, PrimitiveError, check_vertex_count};
+use crate::shape::mesh::Mesh;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A point of the profile: distance from the axis, and height along it (m).
+/// A point of the profile: distance from the axis and height along it (m).
 type Point = [f64; 2];
 
 /// The spacing (m) that puts `segments` vertices, rounded to a multiple of six, around a circle.
@@ -20,14 +19,14 @@ fn spacing_of(segments: u32, radius: f64) -> f64 {
     TAU * radius / (6.0 * sixths)
 }
 
-/// How many parts of about `spacing` a length has, at least one.
+/// The number of parts of about `spacing` in a length, at least one.
 fn parts(shape: &'static str, length: f64, spacing: f64) -> Result<u32, PrimitiveError> {
     let parts = (length / spacing).round().max(1.0);
-    affordable(shape, parts)?;
+    check_vertex_count(shape, parts)?;
     Ok(parts as u32)
 }
 
-/// How many vertices a ring has; one on the axis.
+/// The number of vertices of a ring; one on the axis.
 fn ring_count(radius: f64, spacing: f64) -> u32 {
     if radius == 0.0 {
         return 1;
@@ -36,26 +35,25 @@ fn ring_count(radius: f64, spacing: f64) -> u32 {
     6 * sixths.min(MAX_VERTICES) as u32
 }
 
-/// Turns a profile that runs from bottom to top on its outside about the y axis; a profile that does not
-/// close must begin and end on the axis.
+/// Revolves a profile that runs from bottom to top on its outside; an open profile must begin and end on the axis.
 fn revolve(
     shape: &'static str,
     profile: &[Point],
     spacing: f64,
-    closes: bool,
+    is_closed: bool,
 ) -> Result<Mesh, PrimitiveError> {
     let counts: Vec<u32> = profile.iter().map(|&[r, _]| ring_count(r, spacing)).collect();
-    turn(shape, profile, &counts, closes)
+    revolve_rings(shape, profile, &counts, is_closed)
 }
 
-/// Turns a profile whose rings have these numbers of vertices.
-fn turn(
+/// Revolves a profile whose rings have these numbers of vertices.
+fn revolve_rings(
     shape: &'static str,
     profile: &[Point],
     counts: &[u32],
-    closes: bool,
+    is_closed: bool,
 ) -> Result<Mesh, PrimitiveError> {
-    affordable(shape, counts.iter().map(|&n| f64::from(n)).sum())?;
+    check_vertex_count(shape, counts.iter().map(|&n| f64::from(n)).sum())?;
 
     let mut mesh = Mesh::default();
     let mut starts = Vec::with_capacity(profile.len());
@@ -72,18 +70,18 @@ fn turn(
     for lower in 0..last {
         add_band(&mut mesh, [lower, lower + 1].map(|i| (starts[i], counts[i])));
     }
-    if closes {
+    if is_closed {
         add_band(&mut mesh, [last, 0].map(|i| (starts[i], counts[i])));
     }
     Ok(mesh)
 }
 
-/// Fills the gap between two rings, given by first vertex and count.
+/// Joins two rings, given by first vertex and count, with a band of triangles.
 ///
-/// At each triangle the ring moves on whose next edge has its middle first; that makes the band symmetric
-/// about every plane of symmetry that the two rings share.
+/// Each triangle uses the next edge of the ring whose next edge has its midpoint first. That makes the band
+/// symmetric about every plane of symmetry common to the two rings.
 fn add_band(mesh: &mut Mesh, [(a, a_count), (b, b_count)]: [(u32, u32); 2]) {
-    // a ring of one vertex, on the axis, never moves on
+    // a ring of one vertex, on the axis, has no edges
     let edges = |count: u32| if count == 1 { 0 } else { count };
     let (a_edges, b_edges) = (edges(a_count), edges(b_count));
     let (mut i, mut j) = (0, 0);
@@ -101,7 +99,7 @@ fn add_band(mesh: &mut Mesh, [(a, a_count), (b, b_count)]: [(u32, u32); 2]) {
     }
 }
 
-/// Completes a profile whose lower half is given: a straight line up to its mirror image.
+/// Completes a profile from its lower half: a straight line and the mirror image.
 fn mirrored(
     shape: &'static str,
     mut lower: Vec<Point>,
@@ -118,8 +116,8 @@ fn mirrored(
     Ok(lower)
 }
 
-/// The lower end of a ball around height `centre`: from its pole to the angle `end` away from it.
-fn ball(
+/// The lower part of a circle at height `centre`, from its pole to the angle `end` from it.
+fn lower_arc(
     shape: &'static str,
     centre: f64,
     radius: f64,
@@ -145,11 +143,11 @@ pub(super) fn cylinder(radius: f64, height: f64, segments: u32) -> Result<Mesh, 
     revolve(shape, &mirrored(shape, cap, spacing)?, spacing, false)
 }
 
-/// A cylinder around y, of length `height`, with half balls at its ends.
+/// A cylinder around y, of length `height`, with hemispheres at its ends.
 pub(super) fn capsule(radius: f64, height: f64, segments: u32) -> Result<Mesh, PrimitiveError> {
     let shape = "capsule";
     let spacing = spacing_of(segments, radius);
-    let mut cap = ball(shape, -0.5 * height, radius, FRAC_PI_2, spacing)?;
+    let mut cap = lower_arc(shape, -0.5 * height, radius, FRAC_PI_2, spacing)?;
     if let Some(rim) = cap.last_mut() {
         // the cosine of π/2 is not zero in doubles
         *rim = [radius, -0.5 * height];
@@ -157,7 +155,7 @@ pub(super) fn capsule(radius: f64, height: f64, segments: u32) -> Result<Mesh, P
     revolve(shape, &mirrored(shape, cap, spacing)?, spacing, false)
 }
 
-/// A ring around y.
+/// A torus around y.
 pub(super) fn torus(radius: f64, tube_radius: f64, segments: u32) -> Result<Mesh, PrimitiveError> {
     let shape = "torus";
     let spacing = spacing_of(segments, radius + tube_radius);
@@ -171,10 +169,10 @@ pub(super) fn torus(radius: f64, tube_radius: f64, segments: u32) -> Result<Mesh
     revolve(shape, &profile, spacing, true)
 }
 
-/// A tube around y, of inner radius `[bottom, top]` at its ends.
+/// A tube around y with inner radii `[bottom, top]` at its ends.
 ///
-/// All rings have the same number of vertices: the inner and the outer surface are then alike and cannot cut each other,
-/// however thin the wall.
+/// All rings have the same number of vertices, so that the inner and the outer surface cannot intersect, however thin
+/// the wall.
 pub(super) fn tube(
     [bottom, top]: [f64; 2],
     height: f64,
@@ -184,7 +182,7 @@ pub(super) fn tube(
     let shape = "tube";
     let widest = bottom.max(top) + thickness;
     let spacing = spacing_of(segments, widest);
-    // height at which the middle of a wall of this slope is balanced: ∫ r y dA = 0
+    // the shift that puts the centre of mass of a conical wall at the origin: ∫ r y dA = 0
     let middle = |radius: f64| radius + 0.5 * thickness;
     let rise = height * (middle(top) - middle(bottom)) / (6.0 * (middle(top) + middle(bottom)));
     let (low, high) = (-0.5 * height - rise, 0.5 * height - rise);
@@ -199,10 +197,10 @@ pub(super) fn tube(
         }));
     }
     let counts = vec![ring_count(widest, spacing); profile.len()];
-    turn(shape, &profile, &counts, true)
+    revolve_rings(shape, &profile, &counts, true)
 }
 
-/// Two balls on a bar along x.
+/// Two spheres joined by a bar along x.
 pub(super) fn dumbbell(
     radius: f64,
     length: f64,
@@ -211,15 +209,15 @@ pub(super) fn dumbbell(
 ) -> Result<Mesh, PrimitiveError> {
     let shape = "dumbbell";
     let spacing = spacing_of(segments, radius);
-    // from the outer pole to where the ball meets the bar
+    // from the outer pole to the circle where the sphere meets the bar
     let end = PI - libm::asin(bar_radius / radius);
-    let mut cap = ball(shape, -0.5 * length, radius, end, spacing)?;
+    let mut cap = lower_arc(shape, -0.5 * length, radius, end, spacing)?;
     if let Some(rim) = cap.last_mut() {
-        let reach = ((radius - bar_radius) * (radius + bar_radius)).sqrt();
-        *rim = [bar_radius, reach - 0.5 * length];
+        let height = ((radius - bar_radius) * (radius + bar_radius)).sqrt();
+        *rim = [bar_radius, height - 0.5 * length];
     }
     let mut mesh = revolve(shape, &mirrored(shape, cap, spacing)?, spacing, false)?;
-    // a cyclic change of axes turns y into x and keeps the winding
+    // a cyclic permutation of the axes maps y to x and keeps the winding
     for v in &mut mesh.vertices {
         *v = DVec3::new(v.y, v.z, v.x);
     }

@@ -1,5 +1,10 @@
-use super::*;
+//! Meshes of the built-in shapes: closed, centred, accurate, evenly spread.
+
 use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::*;
 
 fn mesh(shape: Primitive) -> Mesh {
     shape.mesh().unwrap()
@@ -9,7 +14,7 @@ fn defaults() -> impl Iterator<Item = Primitive> {
     Primitive::NAMES.into_iter().map(|name| Primitive::named(name).unwrap())
 }
 
-/// A copy at another resolution.
+/// A copy with resolution `n`.
 fn at(shape: Primitive, n: u32) -> Primitive {
     let mut shape = shape;
     match &mut shape {
@@ -28,7 +33,7 @@ fn at(shape: Primitive, n: u32) -> Primitive {
 }
 
 #[test]
-fn every_name_gives_its_shape_and_no_other() {
+fn every_name_gives_the_shape_of_that_name() {
     for name in Primitive::NAMES {
         assert_eq!(Primitive::named(name).map(|s| s.name()), Some(name));
     }
@@ -36,7 +41,7 @@ fn every_name_gives_its_shape_and_no_other() {
 }
 
 #[test]
-fn defaults_have_the_vertex_counts_that_the_docs_promise() {
+fn defaults_have_the_documented_vertex_counts() {
     let counts: Vec<_> = defaults().map(|s| (s.name(), mesh(s).vertices.len())).collect();
     let expected = [
         ("sphere", 642),
@@ -64,7 +69,7 @@ fn all_meshes_are_closed_manifolds_wound_outwards_at_every_resolution() {
             let found = mesh.closedness();
             assert!(found.is_manifold(), "{} at {n}: {found}", shape.name());
             assert_eq!(found.ignored_triangles, 0);
-            // Euler: V - E + F = 2 - 2 genus, with E = 3F/2; also says that no vertex is there twice
+            // Euler: V − E + F = 2 − 2 genus, with E = 3F/2; it fails if there are duplicate vertices
             let euler = mesh.vertices.len() as i64 - mesh.triangles.len() as i64 / 2;
             let round = matches!(
                 shape,
@@ -83,14 +88,14 @@ fn signed_volume(mesh: &Mesh) -> f64 {
 }
 
 #[test]
-fn defaults_are_about_a_third_of_a_metre_large_and_centred() {
+fn defaults_are_about_0_3_m_large_and_centred() {
     for shape in defaults() {
         let mesh = mesh(shape);
         let size = mesh.bounds().unwrap().size();
         assert!((0.2..0.35).contains(&size), "{} is {size} m large", shape.name());
         let centre = mesh.solid_integrals().unwrap().centre;
         assert!(centre.length() < 1e-15, "{}: {centre}", shape.name());
-        // particles of equal mass balance too, except on the T
+        // the mean of the vertices is at the origin too, except for the T-handle
         let mean = mesh.vertices.iter().sum::<DVec3>() / mesh.vertices.len() as f64;
         let uneven = matches!(shape, Primitive::THandle { .. });
         assert!(uneven || mean.length() < 1e-15, "{}: {mean}", shape.name());
@@ -98,7 +103,7 @@ fn defaults_are_about_a_third_of_a_metre_large_and_centred() {
 }
 
 #[test]
-fn symmetric_shapes_have_principal_axes_along_the_axes() {
+fn the_principal_axes_of_the_defaults_are_the_coordinate_axes() {
     for shape in defaults() {
         let c = mesh(shape).solid_integrals().unwrap().second_moment;
         let scale = c.x_axis.x + c.y_axis.y + c.z_axis.z;
@@ -118,7 +123,7 @@ fn the_t_handle_has_three_distinct_principal_moments() {
 }
 
 #[test]
-fn flat_shapes_have_their_exact_volume_at_any_resolution() {
+fn shapes_with_flat_faces_have_the_exact_volume_at_any_resolution() {
     for n in [1, 3, 10] {
         let size = DVec3::new(0.3, 0.2, 0.1);
         let volume = mesh(Primitive::Box { size, divisions: n }).solid_integrals().unwrap().measure;
@@ -132,7 +137,7 @@ fn flat_shapes_have_their_exact_volume_at_any_resolution() {
 }
 
 #[test]
-fn round_shapes_approach_their_volume_with_the_square_of_the_resolution() {
+fn the_volume_of_round_shapes_converges_with_the_square_of_the_resolution() {
     let (r, h, b) = (0.06f64, 0.2f64, 0.02f64);
     let reach = (r * r - b * b).sqrt();
     let cap = r - reach;
@@ -148,7 +153,7 @@ fn round_shapes_approach_their_volume_with_the_square_of_the_resolution() {
             2.0 * PI * PI * 0.1 * 0.04 * 0.04,
         ),
         (
-            // Pappus: section times the way of its middle, for a frustum too
+            // Pappus: cross-section times the path of its centroid, for a frustum too
             Primitive::Tube {
                 radius: 0.1,
                 bottom_radius: 0.04,
@@ -164,14 +169,14 @@ fn round_shapes_approach_their_volume_with_the_square_of_the_resolution() {
                 + PI * b * b * (h - 2.0 * reach),
         ),
         (
-            // Pappus: section times length of the heart
+            // Pappus: cross-section times length of the centre line
             Primitive::Knot { radius: 0.09, tube_radius: 0.025, segments: 0 },
             PI * 0.025 * 0.025 * knot_length,
         ),
     ];
     for (shape, volume) in cases {
         let error = |n| 1.0 - mesh(at(shape, n)).solid_integrals().unwrap().measure / volume;
-        // powers of two times six, as each shape rounds its counts
+        // multiples of six, to which each shape rounds its counts
         let (coarse, fine) = (error(48), error(192));
         assert!(fine > 0.0 && fine < 3e-3, "{}: {fine}", shape.name());
         assert!((8.0..32.0).contains(&(coarse / fine)), "{}: {coarse} {fine}", shape.name());
@@ -179,7 +184,7 @@ fn round_shapes_approach_their_volume_with_the_square_of_the_resolution() {
 }
 
 #[test]
-fn the_sphere_approaches_volume_and_inertia_with_the_square_of_the_edge() {
+fn the_volume_and_inertia_of_the_sphere_converge_with_the_square_of_the_edge_length() {
     let errors = |n| {
         let solid =
             mesh(Primitive::Sphere { radius: 1.0, subdivisions: n }).solid_integrals().unwrap();
@@ -211,7 +216,7 @@ fn vertices_are_spread_evenly() {
                 (shortest, longest) = (shortest.min(edge), longest.max(edge));
             }
         }
-        // the diagonals count among the edges
+        // diagonals of quadrilaterals are edges too
         let ratio = longest / shortest;
         let most =
             if matches!(shape, Primitive::Box { .. } | Primitive::Knot { .. }) { 5.0 } else { 2.4 };
@@ -249,7 +254,7 @@ fn impossible_dimensions_are_refused_by_name() {
 }
 
 #[test]
-fn impossible_resolutions_are_refused_before_any_memory_is_taken() {
+fn impossible_resolutions_are_refused_before_allocating() {
     for shape in defaults().filter(|s| s.name() != "tetrahedron") {
         let error = at(shape, u32::MAX).mesh().unwrap_err();
         assert!(matches!(error, PrimitiveError::TooManyVertices { .. }), "{error}");
@@ -259,13 +264,13 @@ fn impossible_resolutions_are_refused_before_any_memory_is_taken() {
         }
     }
     assert!(Primitive::Sphere { radius: 1.0, subdivisions: 10 }.mesh().is_err());
-    // long and thin: too many rings
+    // a long thin cylinder has too many rings
     let needle = Primitive::Cylinder { radius: 1e-8, height: 1.0, segments: 12 };
     assert!(matches!(needle.mesh(), Err(PrimitiveError::TooManyVertices { .. })));
 }
 
 #[test]
-fn extreme_proportions_still_close() {
+fn shapes_of_extreme_proportions_are_closed() {
     let shapes = [
         Primitive::Box { size: DVec3::new(1.0, 1e-9, 1e-3), divisions: 7 },
         Primitive::Cylinder { radius: 1.0, height: 1e-9, segments: 30 },

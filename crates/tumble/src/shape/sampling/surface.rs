@@ -1,36 +1,37 @@
-//! Points spread evenly over a surface: a Poisson-disk sample, maximal but for a known bound.
+//! Poisson-disk sampling of a surface, maximal up to a known bound.
 //!
-//! Each triangle is cut into cells, and each cell throws one dart at itself, the cells in random order; a dart that
-//! lands free of all points becomes a point. Then each cell that no single point covers is halved, and its halves
-//! throw and are halved in turn, down to a tenth of the spacing. Then the surface is covered: nowhere is the nearest
-//! point further than the least distance between points and that tenth.
+//! Each triangle is divided into cells. In random order, each cell draws one random candidate point (a dart), which
+//! is accepted if no accepted point is within the minimum distance. Then each cell not covered by a single point is
+//! halved, and its halves draw candidates and are halved in turn, down to a tenth of the spacing. At the end no part
+//! of the surface is farther from a point than the minimum distance plus that tenth.
 //! Source: M. S. Ebeida, S. A. Mitchell, A. Patney, A. A. Davidson and J. D. Owens, "A simple algorithm for maximal
 //! Poisson-disk sampling in high dimensions", Comput. Graph. Forum 31 (2012) 785, with triangles for squares.
 
-use super::{SampleError, affordable};
-use crate::shape::Mesh;
-use crate::shape::integrals::{NOTHING, SIZES};
+use super::error::{SampleError, check_point_count};
+use crate::shape::integrals::{NEGLIGIBLE, SIZES};
+use crate::shape::mesh::Mesh;
 use glam::DVec3;
 
-/// Least distance between points, as a part of the spacing.
+/// Minimum distance between points, in units of the spacing.
 const DISTANCE: f64 = 0.8;
 
-/// Longest edge of a cell at the start, as a part of the spacing.
+/// Longest edge of an initial cell, in units of the spacing.
 const COARSEST: f64 = 1.5;
 
-/// Longest edge of the cells that are given up uncovered: the most that a hole can exceed `DISTANCE`.
+/// Longest edge of a cell that may stay uncovered, in units of the spacing: the bound by which a gap can
+/// exceed `DISTANCE`.
 const FINEST: f64 = 0.1;
 
-/// Passes over the cells that take the place of a random order, where cells are about as large as the spacing.
+/// The number of passes over the cells that stand in for a random order, for cells about as large as the spacing.
 const PASSES: u64 = 16;
 
-/// Points per spacing squared that such a sample has; measured.
+/// Measured points per spacing squared.
 const DENSITY: f64 = 1.1;
 
-/// Lengths within this part of each other count as equal, so that a turned mesh is cut alike.
+/// Lengths within this relative tolerance count as equal, so that a rotated mesh is divided in the same way.
 const TIE: f64 = 1e-9;
 
-/// The finaliser of SplitMix64: a counter in, random bits out. Source: G. L. Steele, D. Lea and C. H. Flood,
+/// The finaliser of SplitMix64, which maps a counter to random bits. Source: G. L. Steele, D. Lea and C. H. Flood,
 /// "Fast splittable pseudorandom number generators", OOPSLA 2014.
 fn mix(counter: u64) -> u64 {
     let z = counter.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -44,11 +45,11 @@ fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// A piece of a triangle.
+/// A triangular part of a mesh triangle.
 #[derive(Clone, Copy)]
 struct Cell {
     corners: [DVec3; 3],
-    /// Random, from the triangle's index and the halvings that led here: order and darts follow from it.
+    /// Random bits from the triangle's index and the halvings; they determine the order and the darts.
     key: u64,
 }
 
@@ -64,7 +65,7 @@ impl Cell {
         a.max(b).max(c)
     }
 
-    /// A point of the cell, evenly at random.
+    /// A uniformly distributed random point of the cell.
     fn dart(&self) -> DVec3 {
         let [a, b, c] = self.corners;
         let (u, v) = (unit(mix(self.key ^ 1)), unit(mix(self.key ^ 2)));
@@ -73,12 +74,13 @@ impl Cell {
         a + (b - a) * u + (c - a) * v
     }
 
-    /// Whether the ball around `centre` of this squared radius covers the cell: it does if it holds the corners.
+    /// Whether the ball about `centre` with this squared radius contains the cell, which it does if it contains
+    /// the corners.
     fn lies_within(&self, centre: DVec3, squared_radius: f64) -> bool {
         self.corners.iter().all(|v| v.distance_squared(centre) < squared_radius)
     }
 
-    /// Cuts the cell at the middle of its longest edge, the first of equals.
+    /// Bisects the cell at the middle of its longest edge, the first of equal ones.
     fn halves(&self) -> [Self; 2] {
         let edges = self.edges();
         let longest =
@@ -92,21 +94,22 @@ impl Cell {
     }
 }
 
-/// The points so far, to be found by place: a hash table of chains, one per block of space.
+/// The accepted points in a spatial hash table with chaining.
 struct Points {
     points: Vec<DVec3>,
     origin: DVec3,
     distance: f64,
-    /// Edge of a block: two distances, so that a ball of that radius touches at most two blocks along each axis.
+    /// Edge of a block: twice the minimum distance, so that a ball of that radius overlaps at most two blocks
+    /// along each axis.
     block: f64,
-    /// The newest point in each slot, as index plus one; 0 for none.
+    /// The latest point in each bucket, as index plus one; 0 for none.
     heads: Vec<u32>,
-    /// The next older point in the same slot, for each point.
+    /// For each point, the previous point in the same bucket.
     chain: Vec<u32>,
 }
 
 impl Points {
-    /// For points above `low` in all coordinates, and about as many as expected.
+    /// An empty table for points above `low` in all coordinates, sized for the expected number.
     fn new(low: DVec3, distance: f64, expected: f64) -> Self {
         let slots = (expected as usize).max(64).next_power_of_two();
         let origin = low - DVec3::splat(4.0 * distance);
@@ -122,7 +125,7 @@ impl Points {
     }
 
     fn block_of(&self, place: DVec3) -> [i64; 3] {
-        // all places lie above the origin, where cutting the fraction off rounds down
+        // all coordinates are above the origin, so truncation rounds down
         ((place - self.origin) / self.block).to_array().map(|x| x as i64)
     }
 
@@ -142,10 +145,10 @@ impl Points {
         self.heads[slot] = self.points.len() as u32;
     }
 
-    /// Calls `visit` for all points within `reach` of `place`, and some more.
-    fn each_near(&self, place: DVec3, reach: f64, mut visit: impl FnMut(DVec3)) {
-        let low = self.block_of(place - DVec3::splat(reach));
-        let high = self.block_of(place + DVec3::splat(reach));
+    /// Calls `visit` for all points within `radius` of `place`, and possibly others.
+    fn each_near(&self, place: DVec3, radius: f64, mut visit: impl FnMut(DVec3)) {
+        let low = self.block_of(place - DVec3::splat(radius));
+        let high = self.block_of(place + DVec3::splat(radius));
         for x in low[0]..=high[0] {
             for y in low[1]..=high[1] {
                 for z in low[2]..=high[2] {
@@ -160,7 +163,7 @@ impl Points {
         }
     }
 
-    /// Adds the cell's dart if it lands free.
+    /// Adds the cell's dart if no point is within the minimum distance.
     fn throw(&mut self, cell: &Cell) {
         let dart = cell.dart();
         let least = self.distance * self.distance;
@@ -171,17 +174,17 @@ impl Points {
         }
     }
 
-    /// Halves a cell and throws darts until points cover it, or pieces are down to the finest size.
-    fn fill(&mut self, spare: &mut Spare, cell: Cell, finest: f64) {
-        // what can matter to any piece, looked up once: a piece and its darts lie within the cell
-        let Spare { stack, near } = spare;
+    /// Bisects a cell and throws darts until points cover it, or its parts are of the finest size.
+    fn fill(&mut self, buffers: &mut Buffers, cell: Cell, finest: f64) {
+        // all points near the cell, looked up once for all its parts
+        let Buffers { stack, near } = buffers;
         let [a, b, c] = cell.corners;
         let middle = (a + b + c) / 3.0;
         let extent = [a, b, c].map(|v| v.distance_squared(middle)).into_iter().fold(0.0, f64::max);
-        let reach = (self.distance + extent.sqrt()) * (1.0 + TIE);
+        let radius = (self.distance + extent.sqrt()) * (1.0 + TIE);
         near.clear();
-        self.each_near(middle, reach, |p| {
-            if p.distance_squared(middle) <= reach * reach {
+        self.each_near(middle, radius, |p| {
+            if p.distance_squared(middle) <= radius * radius {
                 near.push(p);
             }
         });
@@ -204,26 +207,25 @@ impl Points {
     }
 }
 
-/// Memory that `Points::fill` uses again for each cell.
+/// Buffers that [`Points::fill`] reuses.
 #[derive(Default)]
-struct Spare {
+struct Buffers {
     stack: Vec<Cell>,
     near: Vec<DVec3>,
 }
 
-/// Puts the cells in an order that is random near by and orderly from afar: passes over the whole surface, each
-/// over a random part of the cells in which no two are likely to be neighbours.
+/// Orders the cells in passes over the surface, each with a random subset of the cells in the order of the mesh.
 ///
-/// A wholly random order would wait for memory most of the time; a wholly orderly one would pack the points
-/// against each other. Of cells finer than the spacing it takes the more passes, the finer they are.
+/// Within a pass, neighbouring cells are unlikely. A fully random order would be slow because of cache misses, and
+/// the order of the mesh would bias the sample. Cells finer than the spacing need proportionally more passes.
 fn shuffle(cells: &mut [Cell], expected: f64) {
-    let crowd = (cells.len() as f64 / (2.0 * expected).max(1.0)).ceil();
-    let passes = PASSES * crowd as u64;
-    // a stable sort, so that each pass keeps the mesh's own order
+    let cells_per_point = (cells.len() as f64 / (2.0 * expected).max(1.0)).ceil();
+    let passes = PASSES * cells_per_point as u64;
+    // a stable sort keeps the order of the mesh within a pass
     cells.sort_by_key(|cell| cell.key % passes);
 }
 
-/// The triangles, relative to `origin`, in cells of at most the coarsest size.
+/// The triangles, relative to `origin`, divided into cells of at most the coarsest size.
 fn cells(mesh: &Mesh, origin: DVec3, spacing: f64) -> Vec<Cell> {
     let coarsest = COARSEST * COARSEST * spacing * spacing * (1.0 + TIE);
     let mut cells = Vec::new();
@@ -231,7 +233,7 @@ fn cells(mesh: &Mesh, origin: DVec3, spacing: f64) -> Vec<Cell> {
     for (&triangle, index) in mesh.triangles.iter().zip(0u64..) {
         let Some(corners) = mesh.corners(triangle) else { continue };
         let whole = Cell { corners: corners.map(|v| v - origin), key: mix(index) };
-        if double_area(&whole) <= NOTHING * whole.longest() {
+        if double_area(&whole) <= NEGLIGIBLE * whole.longest() {
             continue;
         }
         stack.push(whole);
@@ -251,23 +253,23 @@ fn double_area(cell: &Cell) -> f64 {
     (b - a).cross(c - a).length()
 }
 
-/// Refuses before any work what would make too many points; returns about how many there will be.
+/// Estimates the number of points, and refuses too many before any work is done.
 fn estimate(mesh: &Mesh, spacing: f64, size: f64) -> Result<f64, SampleError> {
-    // in units of the spacing, so that no square leaves the range of doubles before its time
+    // in units of the spacing, to avoid overflow and underflow of the squares
     let (mut area, mut edges) = (0.0, 0.0);
     for corners in mesh.triangles.iter().filter_map(|&t| mesh.corners(t)) {
         let cell = Cell { corners: corners.map(|v| v / spacing), key: 0 };
         area += 0.5 * double_area(&cell);
-        // a sliver has no area to speak of, but is cut all along
+        // a sliver has almost no area, but is divided along its length
         edges += 0.2 * (cell.longest().sqrt() - 1.0).max(0.0);
     }
     let points = DENSITY * area;
-    affordable(spacing, points, 2.0, size)?;
-    affordable(spacing, edges, 1.0, size)?;
+    check_point_count(spacing, points, 2.0, size)?;
+    check_point_count(spacing, edges, 1.0, size)?;
     Ok(points)
 }
 
-/// Points on the surface, at least `DISTANCE` spacings apart and covering it.
+/// Samples the surface: points at least `DISTANCE` spacings apart that cover it.
 pub(super) fn surface(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleError> {
     let bounds = mesh.bounds().ok_or(SampleError::NoSurface)?;
     let (origin, size) = (bounds.centre(), bounds.size());
@@ -287,12 +289,12 @@ pub(super) fn surface(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleErr
         points.throw(cell);
     }
     let finest = FINEST * FINEST * spacing * spacing * (1.0 + TIE);
-    let mut spare = Spare::default();
+    let mut buffers = Buffers::default();
     for cell in &cells {
-        points.fill(&mut spare, *cell, finest);
+        points.fill(&mut buffers, *cell, finest);
     }
 
-    // the shift back may round two points together only where the spacing is below a coordinate's last bits
+    // adding the origin can make points coincide only if the spacing is below the rounding of coordinates
     let mut points = points.points;
     for point in &mut points {
         *point += origin;

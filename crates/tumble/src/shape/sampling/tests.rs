@@ -26,13 +26,13 @@ fn nearest(points: &[DVec3], place: DVec3) -> f64 {
 }
 
 #[test]
-fn vertices_come_as_they_are() {
+fn vertex_sampling_returns_the_vertices_in_order() {
     let mesh = named("box");
     assert_eq!(mesh.sample(Sampling::Vertices).unwrap(), mesh.vertices);
 }
 
 #[test]
-fn surface_points_keep_their_distance_and_leave_no_hole() {
+fn surface_points_keep_the_minimum_distance_and_cover_the_surface() {
     for (name, spacing) in [("box", 0.02), ("sphere", 0.03), ("knot", 0.02), ("t-handle", 0.013)] {
         let mesh = named(name);
         let points = on_surface(&mesh, spacing);
@@ -55,7 +55,7 @@ fn surface_points_keep_their_distance_and_leave_no_hole() {
 }
 
 #[test]
-fn surface_points_lie_on_the_surface_as_densely_as_promised() {
+fn surface_points_lie_on_the_surface_with_the_documented_density() {
     let mesh = Primitive::Box { size: DVec3::ONE, divisions: 1 }.mesh().unwrap();
     let spacing = 0.02;
     let points = on_surface(&mesh, spacing);
@@ -70,7 +70,7 @@ fn surface_points_lie_on_the_surface_as_densely_as_promised() {
 }
 
 #[test]
-fn a_fine_mesh_and_slivers_give_the_same_density_as_a_coarse_one() {
+fn the_density_of_surface_points_does_not_depend_on_the_triangulation() {
     let coarse =
         on_surface(&Primitive::Box { size: DVec3::ONE, divisions: 1 }.mesh().unwrap(), 0.05);
     let fine =
@@ -87,13 +87,13 @@ fn a_fine_mesh_and_slivers_give_the_same_density_as_a_coarse_one() {
 }
 
 #[test]
-fn a_spacing_larger_than_the_mesh_leaves_one_surface_point() {
+fn a_spacing_larger_than_the_mesh_gives_one_surface_point() {
     assert_eq!(on_surface(&named("sphere"), 10.0).len(), 1);
     assert_eq!(on_surface(&named("sphere"), 1e300).len(), 1);
 }
 
 #[test]
-fn moved_turned_and_scaled_meshes_have_corresponding_surface_points() {
+fn surface_points_translate_rotate_and_scale_with_the_mesh() {
     let turn = DQuat::from_axis_angle(DVec3::new(3.0, -1.0, 2.0).normalize(), 1.1);
     let shift = DVec3::new(4.0, -5.0, 6.0);
     for name in ["box", "sphere", "torus"] {
@@ -110,7 +110,7 @@ fn moved_turned_and_scaled_meshes_have_corresponding_surface_points() {
 }
 
 #[test]
-fn powers_of_two_scale_to_the_last_bit_and_runs_repeat() {
+fn sampling_is_reproducible_and_scales_exactly_by_powers_of_two() {
     for name in ["t-handle", "capsule"] {
         let mesh = named(name);
         for scale in [2f64.powi(-20), 2f64.powi(20)] {
@@ -172,7 +172,7 @@ fn lattices_through_edges_and_walls_stay_symmetric_and_outside_the_surface() {
 }
 
 #[test]
-fn solids_hold_their_volume_of_points_in_any_attitude() {
+fn the_number_of_lattice_points_follows_from_the_volume_in_any_orientation() {
     for name in ["sphere", "cylinder", "torus", "knot", "dumbbell", "t-handle", "tetrahedron"] {
         for angle in [0.0, 0.3, 2.0] {
             let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, -1.0).normalize(), angle);
@@ -186,7 +186,7 @@ fn solids_hold_their_volume_of_points_in_any_attitude() {
 }
 
 #[test]
-fn inside_of_a_ball_is_within_its_radius_and_complete() {
+fn lattice_points_in_a_sphere_are_those_within_its_radius() {
     let radius = 0.15;
     let mesh = Primitive::Sphere { radius, subdivisions: 5 }.mesh().unwrap();
     let points = inside(&mesh, 0.01);
@@ -205,7 +205,7 @@ fn inside_of_a_ball_is_within_its_radius_and_complete() {
 }
 
 #[test]
-fn cavities_are_empty_overlaps_count_once_and_winding_does_not_matter() {
+fn cavities_are_empty_overlaps_count_once_and_the_winding_does_not_matter() {
     let cube = |size| Primitive::Box { size: DVec3::splat(size), divisions: 2 }.mesh().unwrap();
     let joined =
         |a: &Mesh, b: &Mesh, turned: bool| {
@@ -227,7 +227,7 @@ fn cavities_are_empty_overlaps_count_once_and_winding_does_not_matter() {
 }
 
 #[test]
-fn what_cannot_be_sampled_says_why() {
+fn impossible_samplings_are_refused_with_a_suggestion() {
     let mesh = named("torus");
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         for sampling in [Sampling::Surface { spacing: bad }, Sampling::Volume { spacing: bad }] {
@@ -261,7 +261,7 @@ fn what_cannot_be_sampled_says_why() {
 }
 
 #[test]
-fn sizes_beyond_doubles_are_refused() {
+fn sizes_beyond_the_range_of_doubles_are_refused() {
     for scale in [1e-200, 1e150, 1e300] {
         let mesh = mapped(&named("box"), |v| scale * v);
         for sampling in [Sampling::Surface { spacing: scale }, Sampling::Volume { spacing: scale }]

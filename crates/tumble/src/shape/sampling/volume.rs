@@ -1,24 +1,25 @@
 //! Lattice points inside a closed mesh.
 //!
-//! A line along z runs through each column of the lattice and counts, signed, the triangles that it crosses: a
-//! point with a count other than zero below it is inside. Whether a line crosses a triangle is itself counted in
-//! the plane: how often the triangle's edges pass to the right of the line's foot. Each edge gives both of its
-//! triangles the same answer, whatever it rounds to, so the count above a closed mesh is zero for every line, through
-//! edges and vertices too, and rounding misplaces no point but those within rounding of the surface.
-//! Source of the counting in the plane: D. Sunday, "Inclusion of a point in a polygon" (2001), winding number.
+//! For each column of the lattice, a line along z counts its signed crossings with the triangles. A point is inside if
+//! the count below it is not zero. Whether a line crosses a triangle is decided in the xy plane, by the winding number
+//! of the triangle's edges about the line. Both triangles of an edge compute the same bits, so the total count of a
+//! closed mesh is zero for every line, even through edges and vertices, and only points within rounding of the surface
+//! can be misclassified.
+//! Source of the winding number: D. Sunday, "Inclusion of a point in a polygon" (2001).
 
-use super::{SampleError, affordable};
-use crate::shape::Mesh;
+use super::error::{SampleError, check_point_count};
 use crate::shape::integrals::Bounds;
+use crate::shape::mesh::Mesh;
 use glam::{DVec2, DVec3};
 
-/// A point nearer to the surface than this part of the spacing (or of the mesh, if that is smaller) is on it, and so outside.
+/// A point closer to the surface than this fraction of the spacing (or of the mesh, if smaller) counts as outside.
 const ON_SURFACE: f64 = 1e-6;
 
-/// Slope of the lines' offsets; irrational, so that none lies in a wall at a simple angle.
+/// Slope of the lines' offsets; irrational, so that no line lies in a wall at a simple angle.
 const SLOPE: f64 = 0.618_033_988_749_894_8;
 
-/// The lines through one column: a point is inside if it is for all four, whichever side a wall lies.
+/// Offsets of the four lines of a column. A point is inside if it is inside on all four lines, so that points on a
+/// wall on any side count as outside.
 const LINES: [DVec2; 4] = [
     DVec2::new(-1.0, -SLOPE),
     DVec2::new(1.0, -SLOPE),
@@ -29,17 +30,18 @@ const LINES: [DVec2; 4] = [
 /// A cubic lattice centred at the origin.
 struct Lattice {
     spacing: f64,
-    /// How near (m) to the surface is on it.
+    /// Points within this distance (m) of the surface count as outside.
     offset: f64,
-    /// Layers along each axis.
+    /// The number of layers along each axis.
     counts: [i64; 3],
 }
 
 impl Lattice {
-    /// As many layers as best fit each edge of the bounds; the outermost lie inside by a quarter spacing or more.
+    /// The lattice with the number of layers that best fits each edge of the bounds. The outermost layers lie inside by
+    /// at least a quarter of the spacing.
     fn new(bounds: &Bounds, spacing: f64) -> Self {
         let edges = (bounds.max - bounds.min).to_array();
-        // half a layer more or less is no matter for rounding
+        // the tolerance makes the count independent of rounding
         let counts = edges.map(|e| ((e / spacing + 0.5 + 1e-9).floor() as i64).max(1));
         Self { spacing, offset: ON_SURFACE * spacing.min(bounds.size()), counts }
     }
@@ -49,60 +51,59 @@ impl Lattice {
         0.5 * (2 * layer - (self.counts[axis] - 1)) as f64 * self.spacing
     }
 
-    /// The first layer at or above a coordinate (m), give or take one.
+    /// The first layer at or above a coordinate (m), up to an error of one.
     fn layer_above(&self, axis: usize, coordinate: f64) -> i64 {
         let layer = coordinate / self.spacing + 0.5 * (self.counts[axis] - 1) as f64;
         (layer.ceil() as i64).clamp(0, self.counts[axis])
     }
 
-    /// Layers that can lie between two coordinates, and one more at each end.
+    /// The layers between two coordinates, with one more at each end.
     fn layers(&self, axis: usize, low: f64, high: f64) -> std::ops::Range<i64> {
         let first = (self.layer_above(axis, low) - 1).max(0);
         first..(self.layer_above(axis, high) + 1).min(self.counts[axis])
     }
 }
 
-/// Where a line through a column crosses the surface.
+/// A crossing of a line with the surface.
 #[derive(Clone, Copy)]
 struct Crossing {
-    /// Layers along y and x.
+    /// The layers of the column along y and x.
     column: [i64; 2],
     z: f64,
-    /// Which of the column's lines.
+    /// The index of the line in the column.
     line: u8,
-    /// 1 where the line leaves a solid that is wound outwards, -1 where it enters.
+    /// 1 where the line leaves a solid wound outwards, −1 where it enters.
     sign: i8,
 }
 
-/// A triangle and a point in the plane: how often, signed, its edges go round the point, and the height of the
-/// triangle there.
+/// The winding number of a triangle's edges about a point of the xy plane, and the height of the triangle there.
 fn crossing([a, b, c]: [DVec3; 3], foot: DVec2) -> Option<(i8, f64)> {
-    let mut turns = 0;
-    // where the edges are level with the foot; either two are, or none
+    let mut winding = 0;
+    // the points of the edges at the y of the point; there are two or none
     let mut level = [DVec3::ZERO; 2];
     let mut count = 0;
     for (p, q) in [(a, b), (b, c), (c, a)] {
         if (p.y > foot.y) == (q.y > foot.y) {
             continue;
         }
-        // taken from the lower end, so that both triangles at the edge compute the same bits
+        // from the lower end, so that both triangles of the edge compute the same bits
         let (low, high) = if p.y < q.y { (p, q) } else { (q, p) };
         let left = (high.x - low.x) * (foot.y - low.y) - (high.y - low.y) * (foot.x - low.x);
         if left > 0.0 {
-            turns += if p.y < q.y { 1 } else { -1 };
+            winding += if p.y < q.y { 1 } else { -1 };
         }
         level[count % 2] = low + (high - low) * ((foot.y - low.y) / (high.y - low.y));
         count += 1;
     }
-    if turns == 0 {
+    if winding == 0 {
         return None;
     }
 
-    // between the two edges; a triangle that stands upright has no one height, but none beyond its edges
+    // interpolated between the two edges; the height in a vertical triangle is limited to them
     let [p, q] = level;
     let part = (foot.x - p.x) / (q.x - p.x);
     let part = if part.is_nan() { 0.5 } else { part.clamp(0.0, 1.0) };
-    Some((turns, p.z + part * (q.z - p.z)))
+    Some((winding, p.z + part * (q.z - p.z)))
 }
 
 /// Adds all crossings of a triangle with the lines through the lattice's columns.
@@ -112,7 +113,7 @@ fn add_crossings(found: &mut Vec<Crossing>, lattice: &Lattice, triangle: [DVec3;
     let rows = lattice.layers(1, a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
     for row in rows {
         let y = lattice.at(1, row);
-        // a thin triangle that lies askew fills little of its bounding box, so ask each row for its own extent
+        // an oblique thin triangle fills little of its bounding box, so each row has its own extent
         let Some((low, high)) = extent_of_row(triangle, y, offset) else { continue };
         for layer in lattice.layers(0, low, high) {
             let foot = DVec2::new(lattice.at(0, layer), y);
@@ -125,7 +126,7 @@ fn add_crossings(found: &mut Vec<Crossing>, lattice: &Lattice, triangle: [DVec3;
     }
 }
 
-/// From where to where along x a triangle can reach at heights within `offset` of `y`; generous.
+/// Bounds along x of the part of a triangle within `offset` of `y`; they may be too wide.
 fn extent_of_row(triangle: [DVec3; 3], y: f64, offset: f64) -> Option<(f64, f64)> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (p, q) in [(0, 1), (1, 2), (2, 0)].map(|(i, j)| (triangle[i], triangle[j])) {
@@ -135,7 +136,7 @@ fn extent_of_row(triangle: [DVec3; 3], y: f64, offset: f64) -> Option<(f64, f64)
         }
         for level in [y - offset, y + offset] {
             let t = ((level - bottom.y) / (top.y - bottom.y)).clamp(0.0, 1.0);
-            // a level edge has no parameter, and counts whole
+            // an edge along x has no parameter; take both ends
             for t in if t.is_nan() { [0.0, 1.0] } else { [t, t] } {
                 let x = bottom.x + t * (top.x - bottom.x);
                 (low, high) = (low.min(x), high.max(x));
@@ -145,8 +146,8 @@ fn extent_of_row(triangle: [DVec3; 3], y: f64, offset: f64) -> Option<(f64, f64)
     (low <= high).then_some((low, high))
 }
 
-/// The lattice points of one column, whose crossings are sorted by height: those between where all lines have
-/// entered and where the first leaves.
+/// Adds the lattice points of one column, whose crossings are sorted by height: those above the entry of the last line
+/// and below the exit of the first.
 fn fill_column(points: &mut Vec<DVec3>, lattice: &Lattice, column: &[Crossing]) {
     let Some(&Crossing { column: [row, layer], .. }) = column.first() else { return };
     let (x, y) = (lattice.at(0, layer), lattice.at(1, row));
@@ -155,7 +156,7 @@ fn fill_column(points: &mut Vec<DVec3>, lattice: &Lattice, column: &[Crossing]) 
     for crossing in column {
         counts[usize::from(crossing.line)] += i64::from(crossing.sign);
         if !counts.contains(&0) {
-            // a crossing within the solid, where parts overlap, changes nothing
+            // where parts overlap, later entries are ignored
             entered.get_or_insert(crossing.z);
             continue;
         }
@@ -169,7 +170,7 @@ fn fill_column(points: &mut Vec<DVec3>, lattice: &Lattice, column: &[Crossing]) 
     }
 }
 
-/// Lattice points inside the mesh, relative to the centre of its bounds.
+/// The lattice points inside the mesh, relative to the centre of its bounds.
 fn fill(mesh: &Mesh, bounds: &Bounds, spacing: f64) -> Vec<DVec3> {
     let lattice = Lattice::new(bounds, spacing);
     let centre = bounds.centre();
@@ -191,21 +192,21 @@ fn fill(mesh: &Mesh, bounds: &Bounds, spacing: f64) -> Vec<DVec3> {
     points
 }
 
-/// Refuses before any work what would take too many points or lines.
+/// Refuses too many points or lines before any work is done.
 fn check_size(mesh: &Mesh, volume: f64, spacing: f64, size: f64) -> Result<(), SampleError> {
-    // the shadow along z, in units of the spacing, tells how many lines cross the mesh
-    let (mut shadow, mut rows) = (0.0, 0.0);
+    // the projected area along z, in units of the spacing, is the number of lines that cross the mesh
+    let (mut projected_area, mut rows) = (0.0, 0.0);
     for corners in mesh.triangles.iter().filter_map(|&t| mesh.corners(t)) {
         let [a, b, c] = corners.map(|v| v / spacing);
-        shadow += 0.25 * (b - a).cross(c - a).z.abs();
+        projected_area += 0.25 * (b - a).cross(c - a).z.abs();
         rows += 0.05 * (a.y.max(b.y).max(c.y) - a.y.min(b.y).min(c.y));
     }
-    affordable(spacing, volume / spacing / spacing / spacing, 3.0, size)?;
-    affordable(spacing, shadow, 2.0, size)?;
-    affordable(spacing, rows, 1.0, size)
+    check_point_count(spacing, volume / spacing / spacing / spacing, 3.0, size)?;
+    check_point_count(spacing, projected_area, 2.0, size)?;
+    check_point_count(spacing, rows, 1.0, size)
 }
 
-/// The points inside the mesh of a cubic lattice.
+/// Samples the inside of the mesh with a cubic lattice.
 pub(super) fn volume(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleError> {
     let volume = mesh.solid_integrals().map_err(SampleError::Open)?.measure;
     let Some(bounds) = mesh.bounds() else { return Err(SampleError::NoSurface) };
@@ -214,7 +215,7 @@ pub(super) fn volume(mesh: &Mesh, spacing: f64) -> Result<Vec<DVec3>, SampleErro
 
     let mut points = fill(mesh, &bounds, spacing);
     if points.is_empty() {
-        // the centre of the bounds may lie outside a bent mesh: look for a spacing that finds its inside
+        // the centre of the bounds may be outside a non-convex mesh: search for a finer spacing with points inside
         let mut finer = 0.5 * spacing.min(size);
         while check_size(mesh, volume, finer, size).is_ok() {
             if !fill(mesh, &bounds, finer).is_empty() {

@@ -1,39 +1,39 @@
-//! Bodies that are alike share what is constant about them.
+//! A cache of body models, so that identical bodies share one.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::Body;
+use super::body::Body;
 use crate::BodyModel;
 
-/// Bodies that are alike are mostly described one after the other, or as a mixture of a few kinds.
-const KINDS: usize = 16;
+/// The number of models kept. Identical bodies usually follow each other, or are a mixture of a few kinds.
+const CAPACITY: usize = 16;
 
-/// The latest kinds of bodies.
+/// The most recently used body models.
 #[derive(Debug, Default)]
-pub(super) struct Kinds<'a>(VecDeque<(&'a Body, Arc<BodyModel>)>);
+pub(super) struct ModelCache<'a>(VecDeque<(&'a Body, Arc<BodyModel>)>);
 
-impl<'a> Kinds<'a> {
-    /// What was made for a body like this one, if that is not long ago.
-    pub fn find(&mut self, body: &Body) -> Option<Arc<BodyModel>> {
-        let known = self.0.iter().rposition(|(kind, _)| is_like(kind, body))?;
-        let kind = self.0.remove(known)?;
-        let made = Arc::clone(&kind.1);
-        self.0.push_back(kind);
-        Some(made)
+impl<'a> ModelCache<'a> {
+    /// The model of a body with the same constant data, if it is in the cache.
+    pub fn get(&mut self, body: &Body) -> Option<Arc<BodyModel>> {
+        let index = self.0.iter().rposition(|(cached, _)| has_same_model(cached, body))?;
+        let entry = self.0.remove(index)?;
+        let model = Arc::clone(&entry.1);
+        self.0.push_back(entry);
+        Some(model)
     }
 
-    /// Takes note of what was made for a body.
-    pub fn keep(&mut self, body: &'a Body, made: &Arc<BodyModel>) {
-        if self.0.len() == KINDS {
+    /// Adds a model and drops the least recently used one if the cache is full.
+    pub fn insert(&mut self, body: &'a Body, model: &Arc<BodyModel>) {
+        if self.0.len() == CAPACITY {
             self.0.pop_front();
         }
-        self.0.push_back((body, Arc::clone(made)));
+        self.0.push_back((body, Arc::clone(model)));
     }
 }
 
-/// Whether all that is constant about one body is the same of the other.
-fn is_like(one: &Body, other: &Body) -> bool {
+/// Whether the constant data of two bodies are the same.
+fn has_same_model(one: &Body, other: &Body) -> bool {
     Arc::ptr_eq(&one.shape, &other.shape)
         && one.mass == other.mass
         && one.material == other.material
@@ -46,10 +46,8 @@ mod tests {
     use super::*;
     use crate::{DVec3, MaterialOverride, Motion, Prescribed, Primitive, Shape, Surface, World};
 
-    /// Bodies that differ in where they are, how fast they start and what they are called are alike; those that differ in anything else
-    /// are not, and get their own.
     #[test]
-    fn alike_is_what_differs_in_its_start_alone() {
+    fn bodies_that_differ_only_in_initial_state_and_name_share_a_model() {
         let mesh = Primitive::named("tetrahedron").unwrap().mesh().unwrap();
         let shape = Arc::new(Shape::with_surface(&mesh.vertices, mesh.clone()).unwrap());
         let body = || Body::new(shape.clone()).mass(2.0);

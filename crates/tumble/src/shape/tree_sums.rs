@@ -1,20 +1,20 @@
-//! What is asked of the tree: sums over the particles behind walls, the deepest of them, and which they are.
+//! Queries of the particle tree: sums over the particles behind a wall, the largest depth, and their list.
 
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::particles::{Group, Particles};
-use super::tree::{Branch, Moments, Node, Ramp, Side};
+use super::tree::{Coverage, Moments, Node, Ramp, Subtree};
 use crate::lanes::{LANES, Vec3x8, largest, positive, sum};
 
-/// Branches that can wait at once: a tree of 2³² particles is no deeper.
-const WAITING: usize = 32;
+/// Capacity of the traversal stack; a tree of 2³² particles needs no more.
+const STACK_SIZE: usize = 32;
 
-/// How close to the largest value is close enough. The particles of a flat face that lies on a wall are
-/// equally deep but for rounding, and need not all be looked at.
-const CLOSE: f64 = 1e-4;
+/// Relative tolerance of the largest value. The particles of a flat face on a wall are equally deep up to
+/// rounding, and the tolerance avoids visiting them all.
+const TOLERANCE: f64 = 1e-4;
 
-/// Sums of a ramp f over some particles; each counts as often as it weighs.
+/// Sums of a ramp f over a set of particles, each multiplied by its weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct RampSums {
     /// Σ f.
@@ -23,12 +23,12 @@ pub(crate) struct RampSums {
     pub moment: DVec3,
     /// Σ f².
     pub squares: f64,
-    /// The largest f, where no node was summed whole, and so each particle was looked at.
+    /// The largest f; known only if no node was summed as a whole.
     pub largest: Option<f64>,
 }
 
 impl Particles {
-    /// Sums of `ramp` over the particles where it is above zero, and `within` too if there is one.
+    /// Sums of `ramp` over the particles at which it is positive; if `within` is given, it must be positive too.
     pub(crate) fn sums(&self, level: Level, ramp: &Ramp, within: Option<&Ramp>) -> RampSums {
         match (within, self.is_weighted()) {
             (None, false) => {
@@ -46,7 +46,7 @@ impl Particles {
         }
     }
 
-    /// Compiled once for particles that weigh and once for those that do not, which pay nothing for it.
+    /// Compiled with and without weights, so that unweighted particles have no extra cost.
     #[inline(always)]
     fn sums_in<S: Simd, const N: usize, const WEIGHTED: bool>(
         &self,
@@ -59,27 +59,29 @@ impl Particles {
             || {
                 let mut whole = RampSums { largest: Some(0.0), ..RampSums::default() };
                 let mut lanes = LaneSums::zero(simd);
-                let mut waiting = Waiting::new(self.nodes());
-                while let Some((branch, _)) = waiting.next() {
-                    let node = self.node(branch);
-                    let mut side = node.side(ramp, branch.is_leaf());
+                let mut stack = Stack::new(self.nodes());
+                while let Some((subtree, _)) = stack.pop() {
+                    let node = self.node(subtree);
+                    let mut coverage = node.coverage(ramp, subtree.is_leaf());
                     for ramp in within {
-                        side = side.and(node.side(ramp, branch.is_leaf()));
+                        coverage = coverage.and(node.coverage(ramp, subtree.is_leaf()));
                     }
-                    match side {
-                        Side::Outside => {}
-                        Side::Inside if WEIGHTED => whole.add(self.weighted(branch), ramp),
-                        Side::Inside => whole.add(&node.moments, ramp),
-                        Side::Cut => match branch.children() {
-                            Some([a, b]) => waiting.both((a, 0.0), (b, 0.0)),
+                    match coverage {
+                        Coverage::None => {}
+                        Coverage::All if WEIGHTED => {
+                            whole.add(self.weighted_moments(subtree), ramp);
+                        }
+                        Coverage::All => whole.add(&node.moments, ramp),
+                        Coverage::Some => match subtree.children() {
+                            Some([a, b]) => stack.push_both((a, 0.0), (b, 0.0)),
                             None => {
-                                for group in self.groups(simd, branch) {
-                                    let value = LaneRamp::above(simd, &group, ramp, within);
-                                    let mut share = value;
+                                for group in self.groups(simd, subtree) {
+                                    let value = LaneRamp::positive(simd, &group, ramp, within);
+                                    let mut weighted = value;
                                     if WEIGHTED {
-                                        share *= self.weights(simd, &group);
+                                        weighted *= self.weights(simd, &group);
                                     }
-                                    lanes.add(&group, value, share);
+                                    lanes.add(&group, value, weighted);
                                 }
                             }
                         },
@@ -90,7 +92,7 @@ impl Particles {
         )
     }
 
-    /// The largest value of `ramp` over the particles, to a part in ten thousand; zero where it is nowhere above.
+    /// The largest value of `ramp` over the particles, to a relative 10⁻⁴; zero if it is positive nowhere.
     pub(crate) fn largest(&self, level: Level, ramp: &Ramp) -> f64 {
         dispatch!(level, simd => self.largest_in(simd, ramp))
     }
@@ -100,28 +102,31 @@ impl Particles {
         simd.vectorize(
             #[inline(always)]
             || {
-                let values = LaneRamp::over(simd, ramp);
+                let values = LaneRamp::splat(simd, ramp);
                 let mut best = 0.0f64;
-                let mut waiting = Waiting::new(self.nodes());
-                while let Some((branch, most)) = waiting.next() {
-                    // a bound that ends on its particle may be a rounding above it
+                let mut stack = Stack::new(self.nodes());
+                while let Some((subtree, bound)) = stack.pop() {
+                    // a tight bound may exceed its particle by a rounding
                     let rounding = 4.0 * f64::EPSILON * (ramp.offset.abs() + best);
-                    let enough = best * (1.0 + CLOSE) + rounding;
-                    if most <= enough || self.node(branch).most_by_spread(ramp) <= enough {
+                    let enough = best * (1.0 + TOLERANCE) + rounding;
+                    if bound <= enough
+                        || self.node(subtree).upper_bound_from_scatter(ramp) <= enough
+                    {
                         continue;
                     }
-                    match branch.children() {
+                    match subtree.children() {
                         Some([a, b]) => {
-                            let (of_a, of_b) = (self.most(a, ramp), self.most(b, ramp));
+                            let (of_a, of_b) =
+                                (self.upper_bound(a, ramp), self.upper_bound(b, ramp));
                             if of_a < of_b {
-                                waiting.both((b, of_b), (a, of_a));
+                                stack.push_both((b, of_b), (a, of_a));
                             } else {
-                                waiting.both((a, of_a), (b, of_b));
+                                stack.push_both((a, of_a), (b, of_b));
                             }
                         }
                         None => {
-                            for group in self.groups(simd, branch) {
-                                best = best.max(largest(values.real(simd, &group)));
+                            for group in self.groups(simd, subtree) {
+                                best = best.max(largest(values.values(simd, &group)));
                             }
                         }
                     }
@@ -131,7 +136,7 @@ impl Particles {
         )
     }
 
-    /// Appends the slots of all particles where `ramp` is above zero, in their order.
+    /// Appends the slots of all particles at which `ramp` is positive, in order.
     pub(crate) fn list_positive(&self, level: Level, ramp: &Ramp, slots: &mut Vec<u32>) {
         dispatch!(level, simd => self.list_positive_in(simd, ramp, slots));
     }
@@ -141,16 +146,16 @@ impl Particles {
         simd.vectorize(
             #[inline(always)]
             || {
-                let values = LaneRamp::over(simd, ramp);
-                let mut waiting = Waiting::new(self.nodes());
-                while let Some((branch, _)) = waiting.next() {
-                    let node = self.node(branch);
-                    match (node.side(ramp, branch.is_leaf()), branch.children()) {
-                        (Side::Outside, _) => {}
-                        (Side::Cut, Some([a, b])) => waiting.both((a, 0.0), (b, 0.0)),
+                let values = LaneRamp::splat(simd, ramp);
+                let mut stack = Stack::new(self.nodes());
+                while let Some((subtree, _)) = stack.pop() {
+                    let node = self.node(subtree);
+                    match (node.coverage(ramp, subtree.is_leaf()), subtree.children()) {
+                        (Coverage::None, _) => {}
+                        (Coverage::Some, Some([a, b])) => stack.push_both((a, 0.0), (b, 0.0)),
                         _ => {
-                            for group in self.groups(simd, branch) {
-                                let values = values.real(simd, &group);
+                            for group in self.groups(simd, subtree) {
+                                let values = values.values(simd, &group);
                                 let above = values.simd_gt(f64x8::splat(simd, 0.0));
                                 let mut bits = above.to_bitmask();
                                 while bits != 0 {
@@ -166,55 +171,55 @@ impl Particles {
     }
 
     #[inline(always)]
-    fn most(&self, branch: Branch, ramp: &Ramp) -> f64 {
-        self.node(branch).most(ramp)
+    fn upper_bound(&self, subtree: Subtree, ramp: &Ramp) -> f64 {
+        self.node(subtree).upper_bound_from_box(ramp)
     }
 
     #[inline(always)]
-    fn node(&self, branch: Branch) -> &Node {
-        &self.nodes()[branch.node as usize]
+    fn node(&self, subtree: Subtree) -> &Node {
+        &self.nodes()[subtree.node as usize]
     }
 }
 
-/// The branches still to be visited, the next one last, each with a number to remember.
-struct Waiting {
-    branches: [(Branch, f64); WAITING],
+/// The traversal stack: subtrees still to be visited, each with a bound.
+struct Stack {
+    subtrees: [(Subtree, f64); STACK_SIZE],
     count: usize,
 }
 
-impl Waiting {
+impl Stack {
     #[inline(always)]
     fn new(nodes: &[Node]) -> Self {
-        let mut branches = [(Branch::default(), 0.0); WAITING];
-        branches[0] = (Branch::root(nodes), f64::INFINITY);
-        Self { branches, count: usize::from(!nodes.is_empty()) }
+        let mut subtrees = [(Subtree::default(), 0.0); STACK_SIZE];
+        subtrees[0] = (Subtree::root(nodes), f64::INFINITY);
+        Self { subtrees, count: usize::from(!nodes.is_empty()) }
     }
 
     #[inline(always)]
-    fn next(&mut self) -> Option<(Branch, f64)> {
+    fn pop(&mut self) -> Option<(Subtree, f64)> {
         self.count = self.count.checked_sub(1)?;
-        Some(self.branches[self.count])
+        Some(self.subtrees[self.count])
     }
 
-    /// Both are to be visited, the first of them first.
+    /// Pushes two subtrees, so that `first` is popped before `second`.
     #[inline(always)]
-    fn both(&mut self, first: (Branch, f64), second: (Branch, f64)) {
-        self.branches[self.count] = second;
-        self.branches[self.count + 1] = first;
+    fn push_both(&mut self, first: (Subtree, f64), second: (Subtree, f64)) {
+        self.subtrees[self.count] = second;
+        self.subtrees[self.count + 1] = first;
         self.count += 2;
     }
 }
 
 impl RampSums {
-    /// Adds all particles of a node: f(r) = f(r̄) − slope·(r − r̄), and Σ (r − r̄) = 0.
+    /// Adds all particles of a node, by f(r) = f(r̄) − slope·(r − r̄) and Σ (r − r̄) = 0.
     #[inline(always)]
     fn add(&mut self, moments: &Moments, ramp: &Ramp) {
         let Moments { count, mean: place, .. } = *moments;
         let mean = ramp.at(place);
-        let turned = moments.spread_times(ramp.slope);
+        let scattered = moments.scatter_times(ramp.slope);
         self.sum += count * mean;
-        self.moment += place * (count * mean) - turned;
-        self.squares += count * mean * mean + ramp.slope.dot(turned);
+        self.moment += place * (count * mean) - scattered;
+        self.squares += count * mean * mean + ramp.slope.dot(scattered);
         self.largest = None;
     }
 
@@ -229,7 +234,7 @@ impl RampSums {
     }
 }
 
-/// [`RampSums`], eight side by side.
+/// [`RampSums`] in eight lanes.
 struct LaneSums<S: Simd> {
     sum: f64x8<S>,
     moment: Vec3x8<S>,
@@ -244,12 +249,12 @@ impl<S: Simd> LaneSums<S> {
         Self { sum: zero, moment: Vec3x8::splat(simd, DVec3::ZERO), squares: zero, largest: zero }
     }
 
-    /// Adds the values of a group; `share` is each times what its particle weighs.
+    /// Adds the values of a group; `weighted` is each value times the weight of its particle.
     #[inline(always)]
-    fn add(&mut self, group: &Group<S>, value: f64x8<S>, share: f64x8<S>) {
-        self.sum += share;
-        self.moment += group.place * share;
-        self.squares += value * share;
+    fn add(&mut self, group: &Group<S>, value: f64x8<S>, weighted: f64x8<S>) {
+        self.sum += weighted;
+        self.moment += group.place * weighted;
+        self.squares += value * weighted;
         self.largest = value.simd_gt(self.largest).select(value, self.largest);
     }
 }
@@ -262,7 +267,7 @@ struct LaneRamp<S: Simd> {
 
 impl<S: Simd> LaneRamp<S> {
     #[inline(always)]
-    fn over(simd: S, ramp: &Ramp) -> Self {
+    fn splat(simd: S, ramp: &Ramp) -> Self {
         Self { offset: f64x8::splat(simd, ramp.offset), slope: Vec3x8::splat(simd, ramp.slope) }
     }
 
@@ -271,26 +276,26 @@ impl<S: Simd> LaneRamp<S> {
         self.offset - self.slope.dot(place)
     }
 
-    /// The ramp at the places of a group where it is above zero, and `within` too if there is one; else zero.
+    /// The values of the ramp where it and `within`, if given, are positive; zero elsewhere.
     #[inline(always)]
-    fn above<const N: usize>(
+    fn positive<const N: usize>(
         simd: S,
         group: &Group<S>,
         ramp: &Ramp,
         within: &[Ramp; N],
     ) -> f64x8<S> {
         let zero = f64x8::splat(simd, 0.0);
-        let mut value = positive(simd, LaneRamp::over(simd, ramp).real(simd, group));
+        let mut value = positive(simd, LaneRamp::splat(simd, ramp).values(simd, group));
         for ramp in within {
-            let counts = LaneRamp::over(simd, ramp).at(group.place).simd_gt(zero);
-            value = counts.select(value, zero);
+            let is_within = LaneRamp::splat(simd, ramp).at(group.place).simd_gt(zero);
+            value = is_within.select(value, zero);
         }
         value
     }
 
-    /// The values of the particles, and zero where there is none.
+    /// The values at the particles of a group; zero in slots without a particle.
     #[inline(always)]
-    fn real(&self, simd: S, group: &Group<S>) -> f64x8<S> {
+    fn values(&self, simd: S, group: &Group<S>) -> f64x8<S> {
         let values = self.at(group.place);
         if group.count == LANES {
             return values;
@@ -302,5 +307,5 @@ impl<S: Simd> LaneRamp<S> {
 }
 
 #[cfg(test)]
-#[path = "descend_tests.rs"]
+#[path = "tree_sums_tests.rs"]
 mod tests;

@@ -1,4 +1,4 @@
-//! The tree against a plain loop over the particles.
+//! Queries of the tree against a plain loop over the particles.
 
 use glam::{DMat3, DQuat};
 use proptest::prelude::*;
@@ -22,12 +22,12 @@ fn plain(particles: &Particles, ramp: &Ramp, within: Option<&Ramp>) -> (RampSums
     (sums, largest)
 }
 
-/// Points of some kind: a cloud, a skin, a plane in any direction, a line, a few places many times.
+/// Test points: a cloud, a sphere, a plane of any orientation, a line, or a few positions repeated.
 fn places(kind: u8, count: usize, seeds: &[DVec3]) -> Vec<DVec3> {
     let turn =
         DMat3::from_quat(DQuat::from_rotation_arc(DVec3::X, seeds[0].normalize_or(DVec3::X)));
     let one = |i: usize| {
-        // a cheap, even filling of the cube from −1 to 1
+        // a quasi-random sequence in the cube from −1 to 1
         let spread = |factor: f64| 2.0 * ((i as f64 + 1.0) * factor).fract() - 1.0;
         let p = DVec3::new(spread(0.819_172_513), spread(0.671_043_607), spread(0.549_700_478));
         match kind {
@@ -45,7 +45,7 @@ fn vector() -> impl Strategy<Value = DVec3> {
     [-1.0..1.0f64, -1.0..1.0, -1.0..1.0].prop_map(DVec3::from_array)
 }
 
-/// Weights of some kind: none, all one, even ones, some of which are nothing or next to it, and a few heavy ones.
+/// Test weights: none, all one, uniform with some zero or nearly zero, or a few much heavier than the rest.
 fn weights(kind: u8, count: usize) -> Option<Vec<f64>> {
     let one = |i: usize| {
         let even = ((i as f64 + 1.0) * 0.754_877_666).fract();
@@ -73,7 +73,7 @@ fn check_all(
     let places: Vec<DVec3> = particles.iter().collect();
     let weight: f64 = (0..places.len()).map(|i| particles.weight(i)).sum();
     let (expected, largest) = plain(particles, ramp, within);
-    // what is in play: the forces that add up, and the rounding of their arguments
+    // bounds from rounding of the sums and of their arguments
     let reach = places.iter().fold(0.0f64, |m, p| m.max(p.length()));
     let size = ramp.offset.abs() + ramp.slope.length() * reach;
     let play = 1e-12 * expected.sum + 1e-15 * size * weight;
@@ -87,14 +87,14 @@ fn check_all(
     }
     prop_assert!(found <= largest * (1.0 + 1e-14) + 1e-14 * size, "{found} {largest}");
     prop_assert!(found >= largest * (1.0 - 1.1e-4) - 1e-14 * size, "{found} {largest}");
-    // which particles: all that are clearly behind, none that is clearly before
+    // the list has all particles with clearly positive values, and none with others
     let mut slots = Vec::new();
     particles.list_positive(levels()[0], ramp, &mut slots);
     prop_assert!(slots.is_sorted_by(|a, b| a < b));
     prop_assert!(slots.iter().all(|&slot| ramp.at(particles.at(slot)) > 0.0));
     let clear = places.iter().filter(|p| ramp.at(**p) > 1e-7 * size).count();
     prop_assert!(slots.len() >= clear, "{} {clear}", slots.len());
-    // the same bits in registers of any width
+    // the same bits at every SIMD level
     for level in levels() {
         prop_assert_eq!(particles.sums(level, ramp, within), best, "{:?}", level);
         prop_assert_eq!(particles.largest(level, ramp), found, "{:?}", level);
@@ -109,7 +109,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn sums_are_those_of_a_plain_loop(
+    fn sums_agree_with_a_plain_loop(
         kind in 0u8..5,
         count in prop_oneof![1usize..40, 100usize..3000],
         seeds in prop::collection::vec(vector(), 3),
@@ -136,7 +136,7 @@ proptest! {
     }
 
     #[test]
-    fn a_flat_face_on_a_wall_counts_whole(
+    fn sums_over_a_flat_face_on_a_wall_agree_with_a_plain_loop(
         seed in vector(),
         depth in prop_oneof![Just(0.0), 1e-6..1e-3f64],
     ) {
@@ -147,7 +147,7 @@ proptest! {
 }
 
 #[test]
-fn a_million_particles_agree_with_a_plain_loop() {
+fn sums_over_a_million_particles_agree_with_a_plain_loop() {
     let places = places(1, 1_000_000, &[DVec3::X]);
     let slope = DVec3::new(0.36, -0.48, 0.8);
     check(&places, &Ramp { offset: -0.9, slope }, None).unwrap();
@@ -156,7 +156,7 @@ fn a_million_particles_agree_with_a_plain_loop() {
 }
 
 #[test]
-fn weights_change_neither_slots_nor_bounds() {
+fn weights_do_not_change_slots_or_bounds() {
     let places = places(1, 10_000, &[DVec3::X]);
     let plain = Particles::new(places.iter().copied());
     let weighted = plain.clone().with_weights(&weights(2, places.len()).unwrap());
@@ -165,25 +165,25 @@ fn weights_change_neither_slots_nor_bounds() {
     assert_eq!((plain.weight(1), weighted.weight(0)), (1.0, 0.0));
     let ramp = Ramp { offset: -0.2, slope: DVec3::new(0.36, -0.48, 0.8) };
     assert_eq!(plain.largest(levels()[0], &ramp), weighted.largest(levels()[0], &ramp));
-    // particles that weigh nothing do nothing
+    // particles of zero weight contribute nothing
     let nothing = plain.with_weights(&[0.0; 10_000]);
     assert_eq!(nothing.sums(levels()[0], &ramp, None).sum, 0.0);
     assert_eq!(nothing.sums(levels()[0], &Ramp { offset: 9.0, ..ramp }, None).sum, 0.0);
 }
 
 #[test]
-fn a_tilted_flat_face_is_not_opened_to_its_particles() {
-    // by its box alone, a tilted face is as thick as it is wide
+fn the_root_of_a_tilted_flat_face_close_to_a_wall_is_not_opened() {
+    // the box alone would be as thick as the face is wide
     let places = places(2, 100_000, &[DVec3::new(1.0, 1.0, 1.0)]);
     let slope = DVec3::ONE.normalize();
     let particles = Particles::new(places.iter().copied());
     let root = &particles.nodes()[0];
-    assert_eq!(root.side(&Ramp { offset: 0.3 + 1e-4, slope }, false), Side::Inside);
-    assert_eq!(root.side(&Ramp { offset: 0.3 - 1e-4, slope }, false), Side::Outside);
+    assert_eq!(root.coverage(&Ramp { offset: 0.3 + 1e-4, slope }, false), Coverage::All);
+    assert_eq!(root.coverage(&Ramp { offset: 0.3 - 1e-4, slope }, false), Coverage::None);
 }
 
 #[test]
-fn what_lies_on_the_other_ramp_is_not_within_it() {
+fn particles_on_the_zero_plane_of_the_other_ramp_do_not_count() {
     let layer: Vec<_> = (0..1000)
         .map(|i| DVec3::new(f64::from(i % 32) * 0.25, 0.0, f64::from(i / 32) * 0.25))
         .collect();
@@ -194,7 +194,7 @@ fn what_lies_on_the_other_ramp_is_not_within_it() {
 }
 
 #[test]
-fn no_particle_no_sum() {
+fn the_sums_over_no_particles_are_zero() {
     let none = Particles::default();
     let ramp = Ramp { offset: 1.0, slope: DVec3::X };
     assert_eq!(

@@ -1,4 +1,4 @@
-//! A hand that drags a body about.
+//! The mouse spring.
 #![allow(clippy::unwrap_used)]
 
 use tumble::{Body, DVec3, MouseSpring, Shape, World};
@@ -11,7 +11,7 @@ fn world(dt: f64, gravity: f64) -> World {
 }
 
 #[test]
-fn the_work_of_the_hand_is_what_the_energy_gains() {
+fn the_work_of_the_mouse_spring_equals_the_gain_of_energy() {
     let mut world = world(1e-3, 9.8);
     let start = world.energy().total();
     for step in 0..2000 {
@@ -29,7 +29,7 @@ fn the_work_of_the_hand_is_what_the_energy_gains() {
 }
 
 #[test]
-fn a_pulled_particle_comes_and_stays_whatever_the_step() {
+fn a_pulled_particle_reaches_the_target_at_any_step_size() {
     for dt in [1e-4, 1e-3, 0.02, 0.1] {
         let mut world = world(dt, 0.0);
         let target = DVec3::new(2.0, -1.0, 0.5);
@@ -38,7 +38,7 @@ fn a_pulled_particle_comes_and_stays_whatever_the_step() {
             world.step().unwrap();
         }
         let (place, velocity) = world.body(0).particle(4);
-        // the body may still swing about the particle, which tugs at it
+        // the body may still swing about the particle
         assert!((place - target).length() < 0.05, "dt {dt}: {place}");
         assert!(velocity.length() < 0.05, "dt {dt}: {velocity}");
         assert!(world.set_mouse_spring(None));
@@ -46,7 +46,7 @@ fn a_pulled_particle_comes_and_stays_whatever_the_step() {
 }
 
 #[test]
-fn what_is_not_there_cannot_be_pulled() {
+fn invalid_mouse_springs_are_refused() {
     let mut world = world(1e-3, 0.0);
     for (body, particle, x) in [(1, 0, 0.0), (0, 5, 0.0), (0, 0, f64::NAN)] {
         assert!(!world.set_mouse_spring(Some(MouseSpring {

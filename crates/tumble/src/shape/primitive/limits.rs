@@ -1,114 +1,20 @@
-//! Which dimensions and resolutions a built-in shape accepts.
+//! The dimensions and resolutions that built-in shapes accept.
 
-use super::Primitive;
-
-/// The most vertices that a shape may have.
-pub(super) const MAX_VERTICES: f64 = 1e7;
+use super::definition::Primitive;
+use super::error::{PrimitiveError, check_vertex_count};
+use super::knot::MAX_TUBE;
 
 /// Dimensions (m) whose squares and products stay within the range of doubles.
 const DIMENSIONS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
-/// Dimensions further apart than this would make neighbouring vertices round to one.
+/// The largest ratio of two dimensions at which neighbouring vertices stay distinct.
 const MAX_PROPORTION: f64 = 1e9;
 
-/// By how much, relatively, a dimension must keep from its limit, so that no two vertices round to one.
+/// The relative margin between a dimension and its limit at which vertices stay distinct.
 const MARGIN: f64 = 1e-6;
 
-/// Why a built-in shape cannot be meshed.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PrimitiveError {
-    /// A dimension is not a number from 1e-100 m to 1e100 m.
-    Dimension {
-        /// Name of the shape.
-        shape: &'static str,
-        /// Name of the dimension.
-        key: &'static str,
-        /// Its value (m).
-        value: f64,
-    },
-    /// A dimension is too large for another.
-    TooLarge {
-        /// Name of the shape.
-        shape: &'static str,
-        /// Name of the dimension.
-        key: &'static str,
-        /// Its value (m).
-        value: f64,
-        /// What it must be less than (m).
-        limit: f64,
-        /// What this limit is, in terms of other dimensions.
-        limit_is: &'static str,
-    },
-    /// The largest dimension is more than 1e9 times the smallest.
-    Proportion {
-        /// Name of the shape.
-        shape: &'static str,
-        /// The smallest dimension (m).
-        smallest: f64,
-        /// The largest dimension (m).
-        largest: f64,
-    },
-    /// The resolution is too low for a closed surface.
-    TooCoarse {
-        /// Name of the shape.
-        shape: &'static str,
-        /// Name of the resolution.
-        key: &'static str,
-        /// Its value.
-        value: u32,
-        /// The least value allowed.
-        least: u32,
-    },
-    /// The mesh would have more than ten million vertices.
-    TooManyVertices {
-        /// Name of the shape.
-        shape: &'static str,
-        /// About how many it would have.
-        vertices: f64,
-    },
-}
-
-impl std::fmt::Display for PrimitiveError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Dimension { shape, key, value } => write!(
-                f,
-                "{key} of the {shape} is {value} m, but must be positive and finite (1e-100 m to 1e100 m)"
-            ),
-            Self::TooLarge { shape, key, value, limit, limit_is } => {
-                write!(
-                    f,
-                    "{key} of the {shape} is {value} m, but must be less than {limit_is} ({limit} m)"
-                )
-            }
-            Self::Proportion { shape, smallest, largest } => write!(
-                f,
-                "the {shape} has dimensions from {smallest} m to {largest} m; one may be at most 1e9 times another"
-            ),
-            Self::TooCoarse { shape, key, value, least } => {
-                write!(f, "{key} of the {shape} is {value}, but must be at least {least}")
-            }
-            Self::TooManyVertices { shape, vertices } => write!(
-                f,
-                "the {shape} would have about {vertices:.2e} vertices, more than {MAX_VERTICES:.0e}; lower its resolution"
-            ),
-        }
-    }
-}
-
-impl std::error::Error for PrimitiveError {}
-
-/// Passes if a mesh of so many vertices may be built; ask before allocating.
-pub(super) fn affordable(shape: &'static str, vertices: f64) -> Result<(), PrimitiveError> {
-    if vertices <= MAX_VERTICES {
-        Ok(())
-    } else {
-        Err(PrimitiveError::TooManyVertices { shape, vertices })
-    }
-}
-
 impl Primitive {
-    /// Checks dimensions and resolution, as far as that needs no mesh.
+    /// Checks dimensions and resolution, as far as possible without a mesh.
     pub(super) fn check(&self) -> Result<(), PrimitiveError> {
         let shape = self.name();
         self.check_dimensions()?;
@@ -122,7 +28,7 @@ impl Primitive {
             return Err(PrimitiveError::TooCoarse { shape, key, value, least });
         }
         if let Self::Sphere { subdivisions, .. } = *self {
-            affordable(shape, 10.0 * libm::pow(4.0, f64::from(subdivisions)) + 2.0)?;
+            check_vertex_count(shape, 10.0 * libm::pow(4.0, f64::from(subdivisions)) + 2.0)?;
         }
         Ok(())
     }
@@ -171,14 +77,14 @@ impl Primitive {
         }
     }
 
-    /// What must be less than what: name and value, limit and what it is.
+    /// Upper limits of dimensions: name, value, limit, and the limit in words.
     fn limits(&self) -> Vec<(&'static str, f64, f64, &'static str)> {
         match *self {
             Self::Torus { radius, tube_radius, .. } => {
                 vec![("tube_radius", tube_radius, radius, "radius")]
             }
             Self::Knot { radius, tube_radius, .. } => {
-                let limit = super::knot::MAX_TUBE * radius;
+                let limit = MAX_TUBE * radius;
                 vec![("tube_radius", tube_radius, limit, "0.41 radius, where it touches itself")]
             }
             Self::Dumbbell { radius, length, bar_radius, .. } => vec![
@@ -187,7 +93,7 @@ impl Primitive {
                     "radius",
                     radius,
                     0.5 * libm::hypot(length, 2.0 * bar_radius),
-                    "what lets the bar show between the balls",
+                    "what lets the bar show between the spheres",
                 ),
             ],
             Self::THandle { length, width, thickness, .. } => vec![
@@ -198,7 +104,7 @@ impl Primitive {
         }
     }
 
-    /// Name, value and least value of the resolution.
+    /// Name, value and minimum of the resolution.
     fn resolution(&self) -> (&'static str, u32, u32) {
         match *self {
             Self::Sphere { subdivisions, .. } => ("subdivisions", subdivisions, 0),

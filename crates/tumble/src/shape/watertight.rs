@@ -1,60 +1,61 @@
-//! Whether a mesh bounds a solid: every edge passed as often one way as the other.
+//! Whether a mesh is watertight: every edge has as many half-edges in one direction as in the other.
 
-use super::Mesh;
 use glam::DVec3;
 
-/// How many faulty edges [`Closedness::first`] names at most.
-const NAMED: usize = 5;
+use super::mesh::Mesh;
+
+/// The maximum length of [`Closedness::first`].
+const MAX_LISTED: usize = 5;
 
 /// What is wrong with an edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeFault {
-    /// An odd number of triangles meets at the edge: there is a hole or a loose sheet.
+    /// An odd number of triangles meets at the edge: it bounds a hole or a loose sheet.
     Open,
-    /// The triangles at the edge could close there, but not all are wound alike.
+    /// An even number of triangles meets at the edge, but their windings are inconsistent.
     WronglyWound,
 }
 
-/// An edge at which a mesh does not close.
+/// An edge at which a mesh is not closed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaultyEdge {
-    /// The vertices at its ends; of vertices at the same place, the one with the smallest index.
+    /// The vertices at its ends; of coincident vertices, the one with the lowest index.
     pub vertices: [u32; 2],
-    /// Where these vertices are (m).
+    /// The positions of these vertices (m).
     pub positions: [DVec3; 2],
     /// What is wrong.
     pub fault: EdgeFault,
 }
 
-/// How a mesh closes; made by [`Mesh::closedness`].
+/// The result of [`Mesh::closedness`]: whether a mesh is watertight, and where it is not.
 ///
-/// Vertices at equal coordinates count as one, and a triangle with two corners at one place counts as
-/// none, so that seams of texture coordinates and collapsed triangles do no harm.
+/// Coincident vertices count as one, and triangles with two coincident corners are ignored. Texture seams
+/// and degenerate triangles therefore do not make a mesh open.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Closedness {
-    /// Triangles that count.
+    /// The number of triangles that count.
     pub triangles: usize,
-    /// Triangles that do not: two corners coincide, or a corner is missing or not finite.
+    /// The number of ignored triangles: two corners coincide, or a corner is missing or not finite.
     pub ignored_triangles: usize,
-    /// Edges at which an odd number of triangles meets.
+    /// The number of edges at which an odd number of triangles meets.
     pub open_edges: usize,
-    /// Edges at which an even number of triangles meets, but more pass it one way than the other.
+    /// The number of edges with an even number of triangles, but more half-edges in one direction.
     pub wrongly_wound: usize,
-    /// Edges at which more than two triangles meet. Alone these do no harm: where two cubes touch along
-    /// an edge, volume and inside are still well defined.
+    /// The number of edges at which more than two triangles meet. Such a mesh may still be watertight:
+    /// where two cubes touch along an edge, the enclosed volume is well defined.
     pub non_manifold: usize,
-    /// The first few open or wrongly wound edges, by vertex index.
+    /// The first few faulty edges, by vertex index.
     pub first: Vec<FaultyEdge>,
 }
 
 impl Closedness {
-    /// Whether the mesh bounds a solid: there are triangles, and each edge is passed as often one way
-    /// as the other.
+    /// Whether the mesh is watertight: it has triangles, and each edge has as many half-edges in one
+    /// direction as in the other.
     pub fn is_closed(&self) -> bool {
         self.triangles > 0 && self.open_edges == 0 && self.wrongly_wound == 0
     }
 
-    /// Whether the mesh is closed and exactly two triangles meet at each edge.
+    /// Whether the mesh is watertight and exactly two triangles meet at each edge.
     pub fn is_manifold(&self) -> bool {
         self.is_closed() && self.non_manifold == 0
     }
@@ -99,15 +100,15 @@ impl std::fmt::Display for Closedness {
     }
 }
 
-/// For each vertex the smallest index of a vertex at the same coordinates.
+/// For each vertex, the lowest index of the vertices at the same coordinates.
 pub(crate) fn weld(vertices: &[DVec3]) -> Vec<u32> {
-    // adding zero turns -0 into 0, so that equal coordinates have equal bits
+    // adding zero turns −0 into 0, so that equal coordinates have equal bits
     let bits = |x: f64| (x + 0.0).to_bits();
     let mut sorted: Vec<([u64; 3], u32)> =
         vertices.iter().zip(0u32..).map(|(v, i)| ([bits(v.x), bits(v.y), bits(v.z)], i)).collect();
     sorted.sort_unstable();
 
-    // the first of each run of equal coordinates stands for the run
+    // the first of each run of equal coordinates represents the run
     let mut first_of = vec![0u32; sorted.len()];
     let mut run = None;
     for (place, index) in sorted {
@@ -121,19 +122,19 @@ pub(crate) fn weld(vertices: &[DVec3]) -> Vec<u32> {
     first_of
 }
 
-/// All passages along edges, bucketed by the lower vertex of the edge.
-struct Passages {
-    /// Where the bucket of each vertex starts, and the end of the last.
+/// All half-edges, in buckets by the lower vertex index of the edge.
+struct HalfEdges {
+    /// The start of the bucket of each vertex, and the end of the last.
     starts: Vec<usize>,
-    /// Twice the upper vertex, plus one if the passage goes down.
+    /// Twice the higher vertex index, plus one if the half-edge runs from the higher to the lower.
     entries: Vec<u64>,
 }
 
-impl Passages {
-    fn of(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
+impl HalfEdges {
+    fn new(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
         let edges = || triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
 
-        // count, then fill: a bucket sort costs one pass where a full sort costs twenty
+        // a bucket sort: count, then fill
         let mut starts = vec![0usize; vertex_count + 1];
         for (a, b) in edges() {
             starts[a.min(b) as usize + 1] += 1;
@@ -151,7 +152,8 @@ impl Passages {
         Self { starts, entries }
     }
 
-    /// Calls `visit(lower, upper, passages up, passages down)` for each edge, by vertex index.
+    /// Calls `visit(lower, higher, ascending half-edges, descending half-edges)` for each edge, in order of
+    /// vertex index.
     fn each_edge(&mut self, mut visit: impl FnMut(u32, u32, usize, usize)) {
         for (lower, ends) in (0u32..).zip(self.starts.windows(2)) {
             let bucket = &mut self.entries[ends[0]..ends[1]];
@@ -165,16 +167,16 @@ impl Passages {
 }
 
 impl Mesh {
-    /// The corners of a triangle (m); `None` where one is missing or not finite.
+    /// The corners of a triangle (m); `None` if one is missing or not finite.
     pub(crate) fn corners(&self, triangle: [u32; 3]) -> Option<[DVec3; 3]> {
         let corner = |i: u32| self.vertices.get(i as usize).copied().filter(|v| v.is_finite());
         Some([corner(triangle[0])?, corner(triangle[1])?, corner(triangle[2])?])
     }
 
-    /// Finds the edges at which the mesh is open, wound wrongly or not a manifold.
+    /// Finds the edges at which the mesh is open, wrongly wound or not manifold.
     ///
-    /// It takes the mesh as it is: a mesh that [`Mesh::new`] would refuse is looked at without its
-    /// faulty triangles. No tolerance is involved; vertices are the same where their coordinates are equal.
+    /// Triangles that [`Mesh::new`] would refuse are ignored. There is no tolerance: vertices coincide if
+    /// their coordinates are equal.
     pub fn closedness(&self) -> Closedness {
         let welded = weld(&self.vertices);
         let triangles: Vec<[u32; 3]> = self
@@ -190,7 +192,7 @@ impl Mesh {
             ignored_triangles: self.triangles.len() - triangles.len(),
             ..Closedness::default()
         };
-        Passages::of(&triangles, welded.len()).each_edge(|lower, upper, up, down| {
+        HalfEdges::new(&triangles, welded.len()).each_edge(|lower, upper, up, down| {
             found.non_manifold += usize::from(up + down > 2);
             if up == down {
                 return;
@@ -202,7 +204,7 @@ impl Mesh {
                 found.wrongly_wound += 1;
                 EdgeFault::WronglyWound
             };
-            if found.first.len() < NAMED {
+            if found.first.len() < MAX_LISTED {
                 let vertices = [lower, upper];
                 let positions = vertices.map(|i| self.vertices[i as usize]);
                 found.first.push(FaultyEdge { vertices, positions, fault });
@@ -230,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_triangle_leaves_three_named_open_edges() {
+    fn a_missing_triangle_leaves_three_open_edges() {
         let mut mesh = tetrahedron();
         mesh.triangles.pop();
         let found = mesh.closedness();
@@ -247,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turned_triangle_has_three_wrongly_wound_edges() {
+    fn a_flipped_triangle_has_three_wrongly_wound_edges() {
         let mut mesh = tetrahedron();
         mesh.triangles[2].swap(0, 1);
         let found = mesh.closedness();
@@ -256,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn split_vertices_and_collapsed_triangles_do_no_harm() {
+    fn duplicate_vertices_and_degenerate_triangles_do_not_open_a_mesh() {
         let tetrahedron = tetrahedron();
         let mut soup = Mesh::default();
         for t in &tetrahedron.triangles {
@@ -264,7 +266,7 @@ mod tests {
             soup.vertices.extend(t.map(|i| tetrahedron.vertices[i as usize]));
             soup.triangles.push([start, start + 1, start + 2]);
         }
-        // minus zero is zero
+        // −0 equals 0
         soup.vertices[0].x = -0.0;
         soup.triangles.push([0, 0, 1]);
         let found = soup.closedness();
@@ -273,11 +275,11 @@ mod tests {
     }
 
     #[test]
-    fn two_solids_that_share_an_edge_are_closed_but_no_manifold() {
+    fn two_solids_that_share_an_edge_are_closed_but_not_manifold() {
         let mut mesh = tetrahedron();
         // a point reflection through the middle of the edge 0-1 maps the edge onto itself
-        let twin: Vec<DVec3> = mesh.vertices.iter().map(|v| DVec3::X - *v).collect();
-        mesh.vertices.extend(twin);
+        let reflected: Vec<DVec3> = mesh.vertices.iter().map(|v| DVec3::X - *v).collect();
+        mesh.vertices.extend(reflected);
         for t in mesh.triangles.clone() {
             mesh.triangles.push([t[0] + 4, t[2] + 4, t[1] + 4]);
         }
@@ -287,16 +289,16 @@ mod tests {
     }
 
     #[test]
-    fn many_faults_are_counted_and_only_the_first_named() {
+    fn all_faulty_edges_are_counted_and_the_first_few_listed() {
         let vertices = (0..30).map(|i| DVec3::new(i as f64, (i * i) as f64, 1.0)).collect();
         let triangles = (0..10).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let found = Mesh::new(vertices, triangles).unwrap().closedness();
-        assert_eq!((found.open_edges, found.first.len()), (30, NAMED));
+        assert_eq!((found.open_edges, found.first.len()), (30, MAX_LISTED));
         assert!(found.to_string().ends_with(", …"));
     }
 
     #[test]
-    fn meshes_made_by_hand_with_faults_do_not_panic() {
+    fn invalid_meshes_do_not_panic() {
         let mesh = Mesh { vertices: vec![DVec3::NAN; 3], triangles: vec![[0, 1, 2], [7, 8, 9]] };
         let found = mesh.closedness();
         assert_eq!((found.triangles, found.ignored_triangles), (0, 2));

@@ -1,12 +1,12 @@
-//! The basic system as a plain loop over particles, to hold the fast code against.
+//! A reference implementation of the basic system, as a plain loop over particles.
 //!
-//! Written to be checked line by line against the equations, not to be quick.
+//! It follows the equations line by line and is not optimised.
 
 use tumble::{BodyState, DMat3, DQuat, DVec3, WallPlane};
 
-/// One body, its particles and everything that acts on it.
+/// One body, with its particles and everything that acts on it.
 #[derive(Clone, Debug)]
-pub struct Yardstick {
+pub struct Reference {
     /// Particles in the body frame, centre of mass at the origin (m).
     pub r: Vec<DVec3>,
     /// Mass of a particle (kg).
@@ -21,7 +21,7 @@ pub struct Yardstick {
     pub walls: Vec<WallPlane>,
 }
 
-impl Yardstick {
+impl Reference {
     /// One step of h seconds.
     pub fn step(&self, s: &mut BodyState, h: f64) {
         // 1: mass properties

@@ -1,29 +1,29 @@
-//! What a straight line meets of a surface: whether a segment passes through it, and how thick the solid is.
+//! Intersection of rays with a surface: whether a segment crosses it, and the thickness of the solid.
 
 use glam::DVec3;
 
 use super::tree::{Ray, Tree};
 use super::triangle::Frame;
 
-/// How far beside a triangle a line still meets it, in units of its longest side: no line slips between two.
-const BESIDE: f64 = 1e-12;
-/// How many triangles [`thickness`] asks at most.
+/// Tolerance outside a triangle in units of its longest edge, so that no line passes between two triangles.
+const TOLERANCE: f64 = 1e-12;
+/// The maximum number of triangles at which [`thickness`] is sampled.
 const SAMPLE: usize = 512;
-/// The part of the surface that is thinner than [`thickness`].
-const THIN_PART: f64 = 0.05;
-/// Nothing is thinner than this, in units of the size: parts that touch are not thin.
+/// The quantile that [`thickness`] returns, by area.
+const QUANTILE: f64 = 0.05;
+/// Smaller depths, in units of the size, are ignored: they belong to parts that touch.
 const TOUCHING: f64 = 1e-9;
 
-/// Where a line from one point of a frame to another crosses the triangle, as a part of the way.
+/// The parameter in 0..1 at which the segment between two points crosses a triangle.
 fn crossing(frame: &Frame, from: DVec3, to: DVec3) -> Option<f64> {
     let (start, end) = (frame.local(from), frame.local(to));
-    // a point on the plane counts as before it
+    // a point on the plane counts as in front of it
     if (start.z >= 0.0) == (end.z >= 0.0) {
         return None;
     }
     let part = start.z / (start.z - end.z);
     let place = start + (end - start) * part;
-    frame.covers(place.x, place.y, BESIDE * frame.length).then_some(part)
+    frame.covers(place.x, place.y, TOLERANCE * frame.length).then_some(part)
 }
 
 /// Whether the segment between two points crosses a triangle.
@@ -36,38 +36,38 @@ pub(super) fn passes_through(tree: &Tree, from: DVec3, to: DVec3) -> bool {
     found
 }
 
-/// How far it is from the middle of a face straight inwards to where one leaves the solid (m), at most `most`.
-fn depth_under(tree: &Tree, slot: usize, size: f64) -> Option<f64> {
+/// The depth (m) of the solid below the centroid of a face, along the inward normal.
+fn depth_below(tree: &Tree, slot: usize, size: f64) -> Option<f64> {
     let own = tree.frame(slot);
     let [a, b, c] = own.corners();
     let from = a + (b - a) / 3.0 + (c - a) / 3.0;
-    // no solid is deeper than the diagonal of its box
-    let reach = 2.0 * size;
-    let to = from - own.normal * reach;
+    // longer than the diagonal of the box
+    let length = 2.0 * size;
+    let to = from - own.normal * length;
     let mut nearest = f64::INFINITY;
     let ray = Ray { from, along: to - from, part: [TOUCHING, 1.0] };
     tree.along_ray(&ray, |other, frame| {
         if other != slot
             && frame.normal.dot(own.normal) < 0.0
             && let Some(part) = crossing(frame, from, to)
-            && part * reach > TOUCHING * size
+            && part * length > TOUCHING * size
         {
             nearest = nearest.min(part);
         }
         nearest
     });
-    (nearest <= 1.0).then_some(nearest * reach)
+    (nearest <= 1.0).then_some(nearest * length)
 }
 
-/// The thickness (m) that all but a twentieth of the surface, by area, exceeds.
+/// The thickness of the solid (m): the 5 % quantile of the depth below the surface, by area.
 pub(super) fn thickness(tree: &Tree, sides: DVec3) -> f64 {
     let size = sides.max_element();
     let mut depths: Vec<(f64, f64)> = sample(tree)
         .into_iter()
-        .filter_map(|(slot, area)| Some((depth_under(tree, slot, size)?, area)))
+        .filter_map(|(slot, area)| Some((depth_below(tree, slot, size)?, area)))
         .collect();
     depths.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let enough = THIN_PART * depths.iter().map(|(_, area)| area).sum::<f64>();
+    let enough = QUANTILE * depths.iter().map(|(_, area)| area).sum::<f64>();
     let mut area = 0.0;
     for &(depth, part) in &depths {
         area += part;
@@ -78,7 +78,7 @@ pub(super) fn thickness(tree: &Tree, sides: DVec3) -> f64 {
     sides.min_element()
 }
 
-/// Slots with the area (m²) that each stands for: all of them, or as many as are asked, spread evenly by area.
+/// Slots with the area (m²) that each represents: all, or [`SAMPLE`] of them spread evenly by area.
 fn sample(tree: &Tree) -> Vec<(usize, f64)> {
     let mut all = Vec::with_capacity(tree.count());
     let mut total = 0.0;
@@ -95,7 +95,7 @@ fn sample(tree: &Tree) -> Vec<(usize, f64)> {
     let (mut sum, mut given) = (0.0, 0.0);
     for (slot, area) in all {
         sum += area;
-        // a large face may stand for many shares
+        // a large face may represent several shares
         let due = (sum / share + 0.5).floor() - given;
         if due >= 1.0 {
             chosen.push((slot, due * share));

@@ -1,39 +1,43 @@
-//! A coarse grid of signed distances: tells at once of points far outside that they are.
+//! A coarse grid of signed distances, for quick bounds without a search.
 //!
-//! A signed distance grows no faster than one goes, so that the distance at a cell's centre bounds it all around.
+//! A signed distance has a Lipschitz constant of 1, so the value at the centre of a cell bounds it everywhere.
 
 use glam::DVec3;
 
 use super::tree::Extent;
 
-/// Cells along the longest side of the box, at least and at most.
+/// Minimum and maximum number of cells along the longest edge of the box.
 const CELLS: [f64; 2] = [12.0, 32.0];
-/// Between these, cells are so many times as large as triangles.
+/// Between these limits, the edge of a cell in units of the triangle size.
 const COARSENESS: f64 = 3.0;
-/// What rounding may have added to a distance, in units of the box's longest side.
+/// Bound on the rounding error of a distance, in units of the longest edge of the box.
 const ROUNDING: f64 = 1e-12;
 
-/// The grid.
+/// Signed distances at the centres of a grid of cells.
 #[derive(Clone, Debug)]
-pub(super) struct Coarse {
+pub(super) struct BoundGrid {
     low: DVec3,
     /// Edge of a cell (m).
     edge: f64,
     /// 1/edge (m⁻¹).
     inverse: f64,
     counts: [usize; 3],
-    /// Signed distances of the cells' centres, less their rounding (m).
+    /// Signed distances at the centres of the cells, minus `rounding` (m).
     distances: Vec<f64>,
-    /// That rounding (m).
+    /// Bound on the rounding error of a distance (m).
     rounding: f64,
 }
 
-impl Coarse {
-    /// Asks for the signed distance at the centre of each cell of a grid over the box of triangles about as large as `grain` (m).
-    pub fn over(bounds: &Extent, grain: f64, mut distance: impl FnMut(DVec3) -> f64) -> Self {
+impl BoundGrid {
+    /// A grid over a box of triangles of about `triangle_size` (m); calls `distance` for the centre of each cell.
+    pub fn new(
+        bounds: &Extent,
+        triangle_size: f64,
+        mut distance: impl FnMut(DVec3) -> f64,
+    ) -> Self {
         let sides = bounds.high - bounds.low;
         let longest = sides.max_element();
-        let edge = longest / (longest / (COARSENESS * grain)).clamp(CELLS[0], CELLS[1]);
+        let edge = longest / (longest / (COARSENESS * triangle_size)).clamp(CELLS[0], CELLS[1]);
         let counts = sides.to_array().map(|side| ((side / edge).ceil() as usize).max(1));
         let rounding = ROUNDING * longest;
         let (low, inverse) = (bounds.low, 1.0 / edge);
@@ -53,23 +57,23 @@ impl Coarse {
         self.low + DVec3::from_array(cell.map(|i| i as f64 + 0.5)) * self.edge
     }
 
-    /// The signed distance of a point is at least this (m).
+    /// A lower bound on the signed distance of a point (m).
     #[inline]
-    pub fn at_least(&self, point: DVec3) -> f64 {
-        let (distance, way) = self.nearby(point);
-        distance - way
+    pub fn lower_bound(&self, point: DVec3) -> f64 {
+        let (distance, to_centre) = self.closest_cell(point);
+        distance - to_centre
     }
 
-    /// The signed distance of a point is at most this (m).
+    /// An upper bound on the signed distance of a point (m).
     #[inline]
-    pub fn at_most(&self, point: DVec3) -> f64 {
-        let (distance, way) = self.nearby(point);
-        distance + 2.0 * self.rounding + way
+    pub fn upper_bound(&self, point: DVec3) -> f64 {
+        let (distance, to_centre) = self.closest_cell(point);
+        distance + 2.0 * self.rounding + to_centre
     }
 
-    /// The distance that is kept of the cell closest to a point, and how far away its centre is (m).
+    /// The stored distance of the cell closest to a point, and the distance of the point from its centre (m).
     #[inline]
-    fn nearby(&self, point: DVec3) -> (f64, f64) {
+    fn closest_cell(&self, point: DVec3) -> (f64, f64) {
         let place = (point - self.low) * self.inverse;
         // the conversion saturates
         let cell = [0, 1, 2].map(|axis| (place[axis] as usize).min(self.counts[axis] - 1));
@@ -78,7 +82,7 @@ impl Coarse {
         (distance, self.centre(cell).distance(point))
     }
 
-    /// Bytes in use.
+    /// Heap memory in use (bytes).
     pub fn memory(&self) -> usize {
         size_of::<f64>() * self.distances.capacity()
     }

@@ -1,4 +1,4 @@
-//! Bodies that meet in ways that nobody would draw: no panic, no NaN, no lost momentum.
+//! Unusual contacts between bodies: no panic, no NaN, no loss of momentum.
 #![allow(clippy::unwrap_used)]
 
 use std::sync::Arc;
@@ -53,7 +53,7 @@ fn advance(world: &mut World, time: f64) {
     }
 }
 
-/// Σ M v and Σ x × M v + L of the free bodies, and what they are measured by.
+/// Σ M v and Σ x × M v + L, each with the sum of magnitudes as a scale.
 fn momenta(world: &World) -> [(DVec3, f64); 2] {
     let mut sums = [(DVec3::ZERO, 0.0); 2];
     for body in world.bodies() {
@@ -66,7 +66,7 @@ fn momenta(world: &World) -> [(DVec3, f64); 2] {
 }
 
 #[track_caller]
-fn same_momenta(before: [(DVec3, f64); 2], world: &World, bound: f64) {
+fn assert_same_momenta(before: [(DVec3, f64); 2], world: &World, bound: f64) {
     for ((now, scale), (then, old_scale)) in momenta(world).into_iter().zip(before) {
         let off = (now - then).length() / scale.max(old_scale).max(1e-300);
         assert!(off < bound, "{off:e}: {then} {now}");
@@ -74,10 +74,10 @@ fn same_momenta(before: [(DVec3, f64); 2], world: &World, bound: f64) {
 }
 
 #[test]
-fn a_step_with_forgotten_lists_finds_the_same_contacts_down_to_rounding() {
+fn cached_neighbour_lists_find_contacts_exact_to_rounding() {
     let mut touched = 0;
     for seed in 0..400 {
-        // balls that creep into each other and a cube by a rounding or so a step
+        // spheres that approach each other, or a cube, by about one rounding per step
         let place = DVec3::new(1.3, 0.7, 2.1) * (1.0 + f64::from(seed) * 0.37);
         let way = DVec3::new(0.6, 0.64, 0.48);
         let rounding = f64::EPSILON * place.length();
@@ -90,31 +90,31 @@ fn a_step_with_forgotten_lists_finds_the_same_contacts_down_to_rounding() {
             Body::new(cube(0.2)).surface(Surface::Mesh).position(apart).orientation(turned)
         };
         let mover = Body::new(ball(0.1)).surface(spheres(0.1)).position(place);
-        let mut kept = space(material(1e4, 0.5, 0.5), 1e-4)
+        let mut cached = space(material(1e4, 0.5, 0.5), 1e-4)
             .body(mover.velocity(way * (-0.7e4 * rounding)))
             .body(other)
             .build()
             .unwrap();
-        let mut forgetful = kept.clone();
+        let mut uncached = cached.clone();
         for _ in 0..60 {
-            kept.step().unwrap();
-            forgetful.forget_scratch();
-            forgetful.step().unwrap();
+            cached.step().unwrap();
+            uncached.forget_scratch();
+            uncached.step().unwrap();
         }
-        assert_eq!(kept.state().hash(), forgetful.state().hash(), "{seed}");
-        touched += u32::from(kept.state().totals.max_depth > 0.0);
+        assert_eq!(cached.state().hash(), uncached.state().hash(), "{seed}");
+        touched += u32::from(cached.state().tally.max_depth > 0.0);
     }
     assert!(touched > 300, "{touched}");
 }
 
 #[test]
-fn spheres_whose_centres_are_at_one_place_are_refused_or_pass_without_nan() {
+fn spheres_with_coincident_centres_are_refused_or_separate_without_nan() {
     let body = |x: f64| Body::new(ball(0.1)).mass(1.0).surface(spheres(0.1)).position(DVec3::X * x);
     let refused = space(material(1e4, 0.5, 0.3), 1e-4).body(body(0.0)).body(body(0.0)).build();
     let errors = refused.unwrap_err().0;
     let overlap = matches!(errors[..], [BuildError::Overlap { depth, .. }] if depth == 0.2);
     assert!(overlap, "{errors:?}");
-    // a restored state may have them there
+    // a restored state may contain them
     let mut world =
         space(material(1e4, 0.5, 0.3), 1e-4).body(body(0.0)).body(body(1.0)).build().unwrap();
     let mut state = world.state().clone();
@@ -122,13 +122,13 @@ fn spheres_whose_centres_are_at_one_place_are_refused_or_pass_without_nan() {
     world.restore(state).unwrap();
     let before = momenta(&world);
     advance(&mut world, 0.1);
-    same_momenta(before, &world, 1e-13);
+    assert_same_momenta(before, &world, 1e-13);
     assert!(world.body(0).position().distance(world.body(1).position()) > 0.2);
 }
 
-/// A ball that falls straight on the middle of a face, an edge and a corner comes straight back.
+/// A sphere that falls straight onto the middle of a face, an edge or a vertex rebounds straight.
 #[test]
-fn a_ball_on_a_face_edge_or_corner_of_a_mesh() {
+fn a_sphere_rebounds_straight_from_a_face_an_edge_and_a_vertex() {
     for (e, direction) in [
         (1.0, DVec3::Y),
         (1.0, DVec3::new(1.0, 1.0, 0.0)),
@@ -151,7 +151,7 @@ fn a_ball_on_a_face_edge_or_corner_of_a_mesh() {
                 .unwrap();
             advance(&mut world, 0.05);
             let v = world.body(1).velocity();
-            // a particle that slips in beside an edge is pushed out by one of the faces
+            // a particle that enters beside an edge is pushed out by one of the faces
             assert!(
                 v.length() <= 1.0 + 1e-6 && (radius == 0.0 || (v - way * e).length() < 1e-2),
                 "{direction} r = {radius} e = {e}: {v}"
@@ -160,9 +160,9 @@ fn a_ball_on_a_face_edge_or_corner_of_a_mesh() {
     }
 }
 
-/// The centre of a sphere, or a particle, exactly on the surface, and on the plane where two faces are equally near.
+/// The centre of a sphere, or a particle, exactly on the surface, or where two faces are equally near.
 #[test]
-fn a_centre_exactly_on_a_face_edge_corner_or_within() {
+fn a_centre_exactly_on_a_feature_conserves_momentum_and_energy() {
     let places = [
         DVec3::Y * 0.1,
         DVec3::new(0.1, 0.1, 0.0),
@@ -196,7 +196,7 @@ fn a_centre_exactly_on_a_face_edge_corner_or_within() {
 }
 
 #[test]
-fn points_needles_and_unequal_masses_keep_their_momenta() {
+fn points_needles_and_unequal_masses_conserve_momenta() {
     let needle: Vec<_> = (0..20).map(|i| DVec3::X * (f64::from(i) * 0.01)).collect();
     let needle = Arc::new(Shape::of_particles(&needle).unwrap());
     for integrator in [Integrator::Splitting, Integrator::Euler] {
@@ -240,7 +240,7 @@ fn points_needles_and_unequal_masses_keep_their_momenta() {
             match result {
                 Ok(()) => {
                     let bound = if integrator == Integrator::Euler { 1e-4 } else { 1e-10 };
-                    same_momenta(before, &world, bound);
+                    assert_same_momenta(before, &world, bound);
                     let off = (world.energy().total() - start) / start;
                     println!("{integrator:?} {light:e} {off:e}");
                 }
@@ -250,7 +250,7 @@ fn points_needles_and_unequal_masses_keep_their_momenta() {
     }
 }
 
-/// Three bodies that collide, in units that are powers of two.
+/// Three bodies that collide, in scaled units.
 fn collision(length: f64, mass: f64, time: f64) -> World {
     let k = 1e5 * mass / time / time;
     let speed = length / time;
@@ -279,7 +279,7 @@ fn collision(length: f64, mass: f64, time: f64) -> World {
 }
 
 #[test]
-fn units_that_are_powers_of_two_change_no_bit() {
+fn scaling_units_by_powers_of_two_does_not_change_any_bit() {
     let mut plain = collision(1.0, 1.0, 1.0);
     let steps = 6000;
     (0..steps).for_each(|_| plain.step().unwrap());
@@ -301,7 +301,7 @@ fn units_that_are_powers_of_two_change_no_bit() {
     }
 }
 
-/// A closed box with a hollow: an outer and an inner skin.
+/// A closed box with a cavity: an outer and an inner surface.
 fn hollow(outer: f64, inner: f64) -> Shape {
     let skin =
         |size: f64| Primitive::Box { size: DVec3::splat(size), divisions: 2 }.mesh().unwrap();
@@ -315,7 +315,7 @@ fn hollow(outer: f64, inner: f64) -> Shape {
 }
 
 #[test]
-fn what_is_in_a_turning_drum_stays_there_and_the_ledger_knows_who_turns_it() {
+fn bodies_stay_in_a_rotating_drum_and_the_ledger_has_its_work() {
     for first in [true, false] {
         let drum = Body::new(hollow(0.6, 0.5))
             .surface(Surface::Mesh)
@@ -350,7 +350,7 @@ fn what_is_in_a_turning_drum_stays_there_and_the_ledger_knows_who_turns_it() {
 }
 
 #[test]
-fn bodies_at_one_place_are_refused_soon_whatever_their_number() {
+fn many_coincident_bodies_are_refused_quickly() {
     let shape = Arc::new(cube(0.1));
     let body = Arc::new(ball(0.1));
     for surface in [Surface::Mesh, spheres(0.1)] {
@@ -359,7 +359,7 @@ fn bodies_at_one_place_are_refused_soon_whatever_their_number() {
             (0..2000).map(|_| Body::new(Arc::clone(shape)).surface(surface).position(DVec3::ONE));
         let begun = std::time::Instant::now();
         let world = many.fold(space(material(1e4, 0.5, 0.0), 1e-4), WorldBuilder::body);
-        // there is no room to push them apart either
+        // they cannot be pushed apart either
         world.clone().overlaps(Overlaps::Push).build().unwrap_err();
         let errors = world.build().unwrap_err();
         println!("{surface:?}: {} errors, {:?}", errors.0.len(), begun.elapsed());
@@ -369,7 +369,7 @@ fn bodies_at_one_place_are_refused_soon_whatever_their_number() {
 }
 
 #[test]
-fn a_body_too_fast_names_both_and_a_step_that_does() {
+fn an_error_for_a_fast_body_names_both_bodies_and_a_step_that_works() {
     for (mover, target) in [
         (
             Body::new(ball(0.02)).surface(spheres(0.02)),
@@ -402,7 +402,7 @@ fn a_body_too_fast_names_both_and_a_step_that_does() {
 }
 
 #[test]
-fn bodies_that_fly_apart_for_ever_cost_nothing_and_stay_finite() {
+fn bodies_that_fly_far_apart_stay_finite_and_conserve_momenta() {
     let mut world = space(material(1e4, 1.0, 0.3), 1e-2);
     for number in 0..50 {
         let way = DVec3::new(f64::from(number % 5) - 2.0, f64::from(number / 5) - 4.5, 1.0);
@@ -415,12 +415,12 @@ fn bodies_that_fly_apart_for_ever_cost_nothing_and_stay_finite() {
     world.restore(state).unwrap();
     let before = momenta(&world);
     advance(&mut world, 10.0);
-    same_momenta(before, &world, 1e-12);
+    assert_same_momenta(before, &world, 1e-12);
     assert!(world.body(0).position().length() > 1e9);
 }
 
 #[test]
-fn a_held_body_may_come_first_or_second() {
+fn a_prescribed_body_may_be_first_or_second() {
     let fall = |first: bool, integrator: Integrator, surface: Surface| {
         let floor =
             Body::new(solid(Primitive::Box { size: DVec3::new(2.0, 0.2, 2.0), divisions: 1 }))
@@ -457,9 +457,9 @@ fn a_held_body_may_come_first_or_second() {
     }
 }
 
-/// Without friction a ball keeps its spin; without loss two bodies keep their energy.
+/// Without friction a sphere keeps its spin; without damping two bodies keep their energy.
 #[test]
-fn the_limits_without_friction_and_without_loss() {
+fn frictionless_contact_conserves_spin_and_elastic_contact_energy() {
     let body = |x: f64, y: f64| {
         Body::new(ball(0.1)).mass(1.0).surface(spheres(0.1)).position(DVec3::new(x, y, 0.0))
     };
@@ -478,9 +478,9 @@ fn the_limits_without_friction_and_without_loss() {
     assert!(world.body(1).velocity().length() > 1.0);
 }
 
-/// Drag of the medium, contact and a wall at once: every joule is still accounted for.
+/// Drag of the medium, contact between bodies and a wall together.
 #[test]
-fn drag_and_contact_share_the_ledger() {
+fn the_residual_is_small_with_drag_and_contact_together() {
     for integrator in [Integrator::Splitting, Integrator::Euler] {
         let body =
             |y: f64| Body::new(ball(0.1)).mass(1.0).surface(spheres(0.1)).position(DVec3::Y * y);
@@ -509,9 +509,9 @@ fn drag_and_contact_share_the_ledger() {
     }
 }
 
-/// Two cubes of one centre, the one turned by an eighth: no corner of the one is in the other.
+/// Two cubes with nearly the same centre, one rotated: no vertex of one need be inside the other.
 #[test]
-fn bodies_in_each_other_without_a_particle_in_the_other_are_refused() {
+fn overlapping_bodies_without_a_particle_inside_the_other_are_refused() {
     let quarter = std::f64::consts::FRAC_PI_4;
     for turn in
         [DQuat::IDENTITY, DQuat::from_rotation_y(quarter), DQuat::from_rotation_x(2.0 * quarter)]
@@ -528,9 +528,9 @@ fn bodies_in_each_other_without_a_particle_in_the_other_are_refused() {
     }
 }
 
-/// A crowd at one place once took gigabytes where its bodies were turned at random.
+/// Regression: many bodies of random orientation nearly at one position must not take much memory.
 #[test]
-fn a_crowd_nearly_at_one_place_is_refused_soon() {
+fn many_bodies_nearly_at_one_position_are_refused_quickly() {
     let mut builder = World::builder().dt(1e-4);
     let clump =
         std::sync::Arc::new(Shape::of_particles(&[DVec3::X * 0.05, DVec3::X * -0.05]).unwrap());
@@ -544,9 +544,9 @@ fn a_crowd_nearly_at_one_place_is_refused_soon() {
     assert!(errors.to_string().contains("start"), "{errors}");
 }
 
-/// A bare particle against a ball: the order of the two bodies once changed the dashpot.
+/// Regression: the dashpot between a particle and a sphere must not depend on the order of the bodies.
 #[test]
-fn the_order_of_bodies_does_not_matter() {
+fn the_result_does_not_depend_on_the_order_of_the_bodies() {
     let throw = |swap: bool| {
         let cube: Vec<_> = (0..8)
             .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 0.1)

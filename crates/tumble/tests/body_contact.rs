@@ -1,4 +1,4 @@
-//! Bodies in each other's way.
+//! Contact between bodies.
 #![allow(clippy::unwrap_used)]
 
 use tumble::{
@@ -47,7 +47,7 @@ fn momenta(world: &World) -> (DVec3, DVec3) {
     })
 }
 
-/// Two bodies thrown at each other off centre, and a third beside them.
+/// Three bodies that collide off centre.
 fn collision(shape: Shape, surface: Surface, dt: f64) -> World {
     let shape = std::sync::Arc::new(shape);
     let body = || Body::new(shape.clone()).mass(2.0).surface(surface);
@@ -81,14 +81,14 @@ fn momentum_and_angular_momentum_are_conserved_to_rounding() {
             world.step().unwrap();
         }
         let (p_end, l_end) = momenta(&world);
-        assert!(world.state().totals.max_depth > 1e-4, "{surface:?}: they missed each other");
+        assert!(world.state().tally.max_depth > 1e-4, "{surface:?}: no contact");
         assert!((p_end - p).length() < 1e-12, "{surface:?} {}", (p_end - p).length());
         assert!((l_end - l).length() < 1e-12, "{surface:?} {}", (l_end - l).length());
     }
 }
 
 #[test]
-fn every_joule_is_accounted_for() {
+fn the_residual_of_the_energy_ledger_is_small() {
     for (shape, surface) in [
         (clump(), Surface::Spheres { radius: 0.05 }),
         (solid(Primitive::Box { size: DVec3::new(0.2, 0.1, 0.15), divisions: 4 }), Surface::Mesh),
@@ -106,7 +106,7 @@ fn every_joule_is_accounted_for() {
 }
 
 #[test]
-fn forgetting_the_scratch_changes_no_bit() {
+fn dropping_cached_data_does_not_change_any_bit() {
     let make = || collision(clump(), Surface::Spheres { radius: 0.05 }, 1e-4);
     let (mut kept, mut forgotten) = (make(), make());
     for _ in 0..2000 {
@@ -118,9 +118,9 @@ fn forgetting_the_scratch_changes_no_bit() {
     assert_eq!(kept.state().hash(), forgotten.state().hash());
 }
 
-/// A head-on collision of two equal balls: the one stops, the other goes on at e times the speed, shared as momentum has it.
+/// A head-on collision of two equal spheres: momentum is conserved, and the relative speed is multiplied by e.
 #[test]
-fn balls_bounce_with_their_restitution() {
+fn spheres_rebound_with_their_coefficient_of_restitution() {
     for e in [0.2, 0.5, 0.9, 1.0] {
         for integrator in [Integrator::Splitting, Integrator::Euler] {
             let body = |x: f64| {
@@ -146,9 +146,9 @@ fn balls_bounce_with_their_restitution() {
     }
 }
 
-/// A ball on a slope below the friction angle with μ ≥ 2/7 tan θ rolls: a = 5/7 g sin θ.
+/// A sphere on a slope with μ ≥ 2/7 tan θ rolls: a = 5/7 g sin θ.
 #[test]
-fn a_ball_rolls_down_a_slope_without_slipping() {
+fn a_sphere_rolls_down_a_slope_without_slipping() {
     let angle = 0.3f64;
     let normal = DVec3::new(angle.sin(), angle.cos(), 0.0);
     let down = DVec3::new(angle.cos(), -angle.sin(), 0.0);
@@ -174,9 +174,9 @@ fn a_ball_rolls_down_a_slope_without_slipping() {
     assert!(world.energy().slip < 1e-6 * world.energy().kinetic);
 }
 
-/// A wall and the face of a large static box are the same to a body of particles.
+/// A wall and the face of a large static box have the same effect on a body of particles.
 #[test]
-fn a_static_box_is_a_wall() {
+fn a_static_box_acts_like_a_wall() {
     let slab = Primitive::Box { size: DVec3::new(4.0, 1.0, 4.0), divisions: 1 };
     let cube = Primitive::Box { size: DVec3::splat(0.2), divisions: 3 };
     for (e, friction, dt, bound) in
@@ -223,7 +223,7 @@ fn nested() -> WorldBuilder {
 }
 
 #[test]
-fn bodies_that_start_in_each_other_are_refused_by_name() {
+fn bodies_that_overlap_initially_are_refused_by_name() {
     let errors = nested().build().unwrap_err();
     let text = errors.to_string();
     assert!(text.contains("\"left\" and \"right\" start"), "{text}");
@@ -231,7 +231,7 @@ fn bodies_that_start_in_each_other_are_refused_by_name() {
 }
 
 #[test]
-fn bodies_that_start_in_each_other_are_moved_apart_when_asked() {
+fn bodies_that_overlap_initially_are_pushed_apart_on_request() {
     let mut world = nested().overlaps(Overlaps::Push).build().unwrap();
     let apart = world.body(1).position().x - world.body(0).position().x;
     assert!((0.199..0.21).contains(&apart), "{apart}");
@@ -241,7 +241,7 @@ fn bodies_that_start_in_each_other_are_moved_apart_when_asked() {
 }
 
 #[test]
-fn bodies_that_could_pass_through_each_other_are_named() {
+fn an_error_names_bodies_that_could_pass_through_each_other() {
     let plate = Primitive::Box { size: DVec3::new(1.0, 0.02, 1.0), divisions: 2 };
     let fall = |dt: f64| {
         let plate = Body::new(solid(plate)).name("plate").surface(Surface::Mesh);
@@ -263,6 +263,6 @@ fn bodies_that_could_pass_through_each_other_are_named() {
     assert_eq!((error.body.as_str(), error.other.as_deref()), ("stone", Some("plate")));
     let text = error.to_string();
     assert!(text.contains("through which it could pass"), "{text}");
-    // the step that it names is one that will do
+    // the suggested step works
     assert!(fall(error.dt.unwrap()).unwrap() > 0.0);
 }

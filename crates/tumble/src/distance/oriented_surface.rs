@@ -1,63 +1,63 @@
-//! The triangles of a mesh that count, wound outwards, their sides matched to edges; and whether they have an inside.
+//! The non-degenerate triangles of a mesh, wound outwards, with their half-edges; and whether they bound a solid.
 
 use glam::DVec3;
 
-use super::SurfaceError;
+use super::error::SurfaceError;
 use super::tree::Extent;
 use super::triangle::Frame;
 use crate::Mesh;
 use crate::shape::weld;
 
-/// The boundary of a hole may be this long, in units of the root of the surface's area. A round hole in a ball has
-/// this where its radius is a seventh of the ball's.
+/// The longest allowed boundary of a hole, in units of the square root of the surface area. It is that of a round hole
+/// in a sphere with a seventh of its radius.
 const HOLE: f64 = 0.25;
-/// The boundaries of all holes together may be this long, in the same unit.
+/// The longest allowed boundary of all holes together, in the same unit.
 const HOLES: f64 = 0.5;
-/// A volume below this part of what the mesh's size allows is rounding, not substance.
-const NOTHING: f64 = 1e-14;
-/// Meshes smaller or larger (m) would lose their squares to the range of doubles.
+/// A volume below this fraction of the bound from the mesh's size is zero up to rounding.
+const NEGLIGIBLE: f64 = 1e-14;
+/// Mesh sizes (m) accepted, so that products of lengths stay in the range of doubles.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
-/// A triangle that counts.
+/// A triangle of the surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
-    /// Its corners, welded: the longest side is from the first to the second.
+    /// The welded vertices; the longest edge runs from the first to the second.
     pub corners: [u32; 3],
-    /// Its index in the mesh.
+    /// The index of the triangle in the mesh.
     pub index: u32,
     pub frame: Frame,
 }
 
-/// A side of a triangle, by the edge of which it is part.
+/// An edge of one face. Half-edges sort by edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Side {
+pub(super) struct HalfEdge {
     /// The vertices at its ends, the lower first.
     pub ends: [u32; 2],
-    /// The place of the face among the faces.
+    /// The index of the face in [`OrientedSurface::faces`].
     pub face: usize,
-    /// The side starts at this corner of the face.
+    /// The corner of the face at which the half-edge starts.
     pub corner: usize,
 }
 
-/// The surface of a solid.
+/// The surface of a solid, wound outwards.
 #[derive(Debug)]
-pub(super) struct Outline {
+pub(super) struct OrientedSurface {
     pub faces: Vec<Face>,
-    /// All sides, by edge.
-    pub sides: Vec<Side>,
-    /// How many vertices the mesh has.
+    /// All half-edges, sorted by edge.
+    half_edges: Vec<HalfEdge>,
+    /// The number of vertices of the mesh.
     pub vertices: usize,
-    /// The box around it.
+    /// The bounding box.
     pub bounds: Extent,
-    /// Whether the mesh was wound inwards, and has been turned.
-    pub turned: bool,
-    /// How many holes there are.
+    /// Whether the mesh was wound inwards and has been reversed.
+    pub is_turned: bool,
+    /// The number of holes.
     pub holes: usize,
 }
 
-impl Outline {
-    /// The surface of the solid that a mesh bounds, but for small holes.
-    pub fn of(mesh: &Mesh) -> Result<Self, SurfaceError> {
+impl OrientedSurface {
+    /// The surface of a mesh; small holes are allowed.
+    pub fn new(mesh: &Mesh) -> Result<Self, SurfaceError> {
         let welded = weld(&mesh.vertices);
         let mut corners: Vec<(u32, [u32; 3])> = (0..)
             .zip(&mesh.triangles)
@@ -69,7 +69,7 @@ impl Outline {
         let bounds = corners
             .iter()
             .flat_map(|&(_, t)| places(t))
-            .fold(Extent::NONE, |all, p| all.with(Extent { low: p, high: p }));
+            .fold(Extent::NONE, |all, p| all.union(Extent { low: p, high: p }));
         if corners.is_empty() {
             return Err(SurfaceError::NoTriangles);
         }
@@ -78,40 +78,40 @@ impl Outline {
             return Err(SurfaceError::OutOfRange { size });
         }
 
-        let turned = turn_outwards(&mut corners, &bounds, places);
-        let faces: Vec<Face> = corners.iter().map(|&(i, t)| Face::of(i, t, places)).collect();
-        let sides = sides(&faces);
-        let holes = check_edges(mesh, &faces, &sides)?;
-        let Some(turned) = turned else { return Err(SurfaceError::NoVolume) };
-        Ok(Self { faces, sides, vertices: mesh.vertices.len(), bounds, turned, holes })
+        let is_turned = wind_outwards(&mut corners, &bounds, places);
+        let faces: Vec<Face> = corners.iter().map(|&(i, t)| Face::new(i, t, places)).collect();
+        let half_edges = half_edges(&faces);
+        let holes = check_edges(mesh, &faces, &half_edges)?;
+        let Some(is_turned) = is_turned else { return Err(SurfaceError::NoVolume) };
+        Ok(Self { faces, half_edges, vertices: mesh.vertices.len(), bounds, is_turned, holes })
     }
 
-    /// The sides, one slice an edge.
-    pub fn edges(&self) -> impl Iterator<Item = &[Side]> {
-        edges(&self.sides)
+    /// The half-edges of each edge.
+    pub fn edges(&self) -> impl Iterator<Item = &[HalfEdge]> {
+        edges(&self.half_edges)
     }
 
-    /// Whether a side is passed from its lower to its upper vertex.
-    pub fn goes_up(&self, side: &Side) -> bool {
-        goes_up(&self.faces, side)
+    /// Whether a half-edge runs from its lower to its higher vertex.
+    pub fn is_ascending(&self, half_edge: &HalfEdge) -> bool {
+        is_ascending(&self.faces, half_edge)
     }
 }
 
 impl Face {
-    fn of(index: u32, mut corners: [u32; 3], places: impl Fn([u32; 3]) -> [DVec3; 3]) -> Self {
+    fn new(index: u32, mut corners: [u32; 3], places: impl Fn([u32; 3]) -> [DVec3; 3]) -> Self {
         let first = Frame::first_corner(places(corners));
         corners.rotate_left(first);
-        Self { corners, index, frame: Frame::of(places(corners)) }
+        Self { corners, index, frame: Frame::new(places(corners)) }
     }
 }
 
-/// Winds all triangles the other way if the volume inside is negative, and says so; `None` if there is none.
-fn turn_outwards(
+/// Reverses all triangles if the enclosed volume is negative, and returns whether it did; `None` if it is zero.
+fn wind_outwards(
     corners: &mut [(u32, [u32; 3])],
     bounds: &Extent,
     places: impl Fn([u32; 3]) -> [DVec3; 3],
 ) -> Option<bool> {
-    // about the middle of the box, so that a small hole or a large distance from the origin matters little
+    // about the centre of the box, which reduces the effect of small holes and of rounding far from the origin
     let middle = 0.5 * bounds.low + 0.5 * bounds.high;
     let (mut volume, mut area) = (0.0, 0.0);
     for &(_, t) in corners.iter() {
@@ -120,7 +120,7 @@ fn turn_outwards(
         area += (b - a).cross(c - a).length();
     }
     let size = (bounds.high - bounds.low).max_element();
-    if volume.abs() <= NOTHING * size * area {
+    if volume.abs() <= NEGLIGIBLE * size * area {
         return None;
     }
     if volume < 0.0 {
@@ -129,32 +129,36 @@ fn turn_outwards(
     Some(volume < 0.0)
 }
 
-fn sides(faces: &[Face]) -> Vec<Side> {
-    let mut sides = Vec::with_capacity(3 * faces.len());
+fn half_edges(faces: &[Face]) -> Vec<HalfEdge> {
+    let mut half_edges = Vec::with_capacity(3 * faces.len());
     for (face, triangle) in faces.iter().enumerate() {
         for corner in 0..3 {
             let (a, b) = (triangle.corners[corner], triangle.corners[(corner + 1) % 3]);
-            sides.push(Side { ends: [a.min(b), a.max(b)], face, corner });
+            half_edges.push(HalfEdge { ends: [a.min(b), a.max(b)], face, corner });
         }
     }
-    sides.sort_unstable();
-    sides
+    half_edges.sort_unstable();
+    half_edges
 }
 
-fn edges(sides: &[Side]) -> impl Iterator<Item = &[Side]> {
-    sides.chunk_by(|a, b| a.ends == b.ends)
+fn edges(half_edges: &[HalfEdge]) -> impl Iterator<Item = &[HalfEdge]> {
+    half_edges.chunk_by(|a, b| a.ends == b.ends)
 }
 
-fn goes_up(faces: &[Face], side: &Side) -> bool {
-    faces[side.face].corners[side.corner] == side.ends[0]
+fn is_ascending(faces: &[Face], half_edge: &HalfEdge) -> bool {
+    faces[half_edge.face].corners[half_edge.corner] == half_edge.ends[0]
 }
 
-/// Refuses what is wound wrongly or has large holes; returns how many small ones there are.
-fn check_edges(mesh: &Mesh, faces: &[Face], sides: &[Side]) -> Result<usize, SurfaceError> {
+/// Refuses inconsistent winding and large holes; returns the number of small holes.
+fn check_edges(
+    mesh: &Mesh,
+    faces: &[Face],
+    half_edges: &[HalfEdge],
+) -> Result<usize, SurfaceError> {
     let mut boundary = Vec::new();
-    for edge in edges(sides) {
-        let up = edge.iter().filter(|side| goes_up(faces, side)).count();
-        if 2 * up == edge.len() {
+    for edge in edges(half_edges) {
+        let ascending = edge.iter().filter(|half_edge| is_ascending(faces, half_edge)).count();
+        if 2 * ascending == edge.len() {
             continue;
         }
         if edge.len() % 2 == 0 {
@@ -180,14 +184,14 @@ fn check_edges(mesh: &Mesh, faces: &[Face], sides: &[Side]) -> Result<usize, Sur
     Ok(holes.len())
 }
 
-/// The length of each connected part of a set of edges, in no particular but a fixed order.
+/// The length of each connected component of a set of edges, in a fixed order.
 fn hole_lengths(boundary: &[([u32; 2], f64)]) -> Vec<f64> {
     let mut vertices: Vec<u32> = boundary.iter().flat_map(|(ends, _)| *ends).collect();
     vertices.sort_unstable();
     vertices.dedup();
     let place = |vertex: u32| vertices.partition_point(|&v| v < vertex);
 
-    // each vertex points to another of its part, the last to itself
+    // union-find: each vertex points to another of its component, the root to itself
     let mut parent: Vec<usize> = (0..vertices.len()).collect();
     let root = |parent: &mut Vec<usize>, mut at: usize| {
         while parent[at] != at {

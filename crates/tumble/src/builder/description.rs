@@ -1,0 +1,112 @@
+//! The description of a world.
+
+use glam::DVec3;
+
+use super::body::Body;
+use crate::{Integrator, Material, MaterialOverride, Overlaps, WallBox, WallPlane};
+
+/// The description of a world; [`WorldBuilder::build`] checks it and makes the world.
+#[derive(Clone, Debug)]
+pub struct WorldBuilder {
+    pub(super) gravity: DVec3,
+    pub(super) velocity_damping_stiffness: f64,
+    pub(super) dt: f64,
+    pub(super) integrator: Integrator,
+    pub(super) energy_tolerance: Option<f64>,
+    pub(super) force: bool,
+    pub(super) material: Material,
+    pub(super) overlaps: Overlaps,
+    pub(super) walls: Vec<(WallPlane, MaterialOverride)>,
+    pub(super) bodies: Vec<Body>,
+}
+
+impl Default for WorldBuilder {
+    /// Gravity and time step of the basic system, without walls.
+    fn default() -> Self {
+        Self {
+            gravity: DVec3::new(0.0, -9.8, 0.0),
+            velocity_damping_stiffness: 0.0,
+            dt: 1e-3,
+            integrator: Integrator::default(),
+            energy_tolerance: None,
+            force: false,
+            material: Material::default(),
+            overlaps: Overlaps::default(),
+            walls: Vec::new(),
+            bodies: Vec::new(),
+        }
+    }
+}
+
+impl WorldBuilder {
+    /// Gravity g (m/s²); (0, −9.8, 0) by default.
+    pub fn gravity(mut self, gravity: DVec3) -> Self {
+        self.gravity = gravity;
+        self
+    }
+
+    /// Drag c of the medium on every particle, F = −c v (N·s/m); 0 by default.
+    pub fn velocity_damping_stiffness(mut self, c: f64) -> Self {
+        self.velocity_damping_stiffness = c;
+        self
+    }
+
+    /// Time step h (s); 1e-3 by default.
+    pub fn dt(mut self, dt: f64) -> Self {
+        self.dt = dt;
+        self
+    }
+
+    /// The time integrator.
+    pub fn integrator(mut self, integrator: Integrator) -> Self {
+        self.integrator = integrator;
+        self
+    }
+
+    /// Refines steps in contact until the energy error of each substep is below this fraction of the
+    /// energy in the contact. Smaller values cost more; `None`, the default, disables refinement.
+    pub fn energy_tolerance(mut self, tolerance: impl Into<Option<f64>>) -> Self {
+        self.energy_tolerance = tolerance.into();
+        self
+    }
+
+    /// Allows a time step above the critical one.
+    pub fn force(mut self, force: bool) -> Self {
+        self.force = force;
+        self
+    }
+
+    /// The material of contacts, where neither wall nor body has its own.
+    pub fn material(mut self, material: Material) -> Self {
+        self.material = material;
+        self
+    }
+
+    /// The treatment of bodies that overlap initially; they are refused by default.
+    pub fn overlaps(mut self, overlaps: Overlaps) -> Self {
+        self.overlaps = overlaps;
+        self
+    }
+
+    /// Adds a wall.
+    pub fn wall(self, wall: WallPlane) -> Self {
+        self.wall_of(wall, MaterialOverride::default())
+    }
+
+    /// Adds a wall with its own material.
+    pub fn wall_of(mut self, wall: WallPlane, material: MaterialOverride) -> Self {
+        self.walls.push((wall, material));
+        self
+    }
+
+    /// Adds the walls of a box.
+    pub fn walls_of_box(self, walls: &WallBox) -> Self {
+        walls.planes().into_iter().fold(self, Self::wall)
+    }
+
+    /// Adds a body.
+    pub fn body(mut self, body: Body) -> Self {
+        self.bodies.push(body);
+        self
+    }
+}
