@@ -59,7 +59,7 @@ fn preparation() -> Outcome {
     let mesh = sphere_mesh(1000);
     let count = mesh.vertices.len();
     let start = Instant::now();
-    let shape = Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Particles)?;
+    let shape = Shape::from_mesh(&mesh, Sampling::Vertices, MassModel::Particles)?;
     let seconds = start.elapsed().as_secs_f64();
     println!("| shape of {count} particles: mass, principal axes, tree (s) | {} |", short(seconds));
     let particles = shape.particles();

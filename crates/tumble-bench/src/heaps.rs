@@ -129,7 +129,7 @@ fn world(bodies: impl Iterator<Item = BodyState>, edges: DVec3) -> Result<World,
         (0..8).map(|i| DVec3::new(corners[i & 1], corners[i >> 1 & 1], corners[i >> 2])).collect();
     // of a unit of mass: 2 R² for where a sphere is, 2/5 R² for the sphere itself
     let inertia = DMat3::IDENTITY * (2.4 * RADIUS * RADIUS);
-    let shape = Shape::of_distribution(&corners, Mesh::default(), DVec3::ZERO, inertia)?;
+    let shape = Shape::from_distribution(&corners, Mesh::default(), DVec3::ZERO, inertia)?;
     let shape = Arc::new(shape);
     let material = Material {
         collision_stiffness: 1e6,
@@ -138,7 +138,7 @@ fn world(bodies: impl Iterator<Item = BodyState>, edges: DVec3) -> Result<World,
         friction_damping: Some(75.0 * MASS),
         ..Material::default()
     };
-    let mut builder = World::builder().dt(DT).material(material).walls_of_box(&WallBox {
+    let mut builder = World::builder().dt(DT).material(material).box_walls(&WallBox {
         min: DVec3::ZERO,
         max: edges * (EDGE as f64 * PITCH),
         orientation: DQuat::IDENTITY,

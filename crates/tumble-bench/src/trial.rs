@@ -85,7 +85,7 @@ impl Trial {
         integrator: Integrator,
     ) -> Result<Self, Box<dyn std::error::Error>> {
         let places = fibonacci_sphere(count, RADIUS);
-        let shape = Shape::of_particles(&places)?;
+        let shape = Shape::from_particles(&places)?;
         let mass = 1.0;
         let rests = !matches!(motion, Motion::Flight | Motion::Bouncing);
         let cap = RADIUS * (1.0 - 0.114);
@@ -118,7 +118,7 @@ impl Trial {
             .gravity(if motion == Motion::Flight { DVec3::ZERO } else { DVec3::Y * -9.8 })
             .velocity_damping_stiffness(drag)
             .material(material)
-            .walls_of_box(&WallBox::arena())
+            .box_walls(&WallBox::arena())
             .body(body)
             .build()?;
         let restart = if motion == Motion::Bouncing { 3000 } else { u64::MAX };

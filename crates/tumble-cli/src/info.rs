@@ -35,7 +35,7 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
     for vertex in &mut file.mesh.vertices {
         *vertex *= args.scale;
     }
-    let shape = Shape::of_mesh(&file.mesh, Sampling::Vertices, MassModel::Particles)
+    let shape = Shape::from_mesh(&file.mesh, Sampling::Vertices, MassModel::Particles)
         .map_err(|error| Failure::call(&error))?;
     print(&columns(&rows(&file, &shape, args.particle_mass)))
 }

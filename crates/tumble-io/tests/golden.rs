@@ -39,7 +39,7 @@ fn the_built_in_scenes_are_what_they_were() {
                 load_builtin(scene.name, &LoadOptions::default()).unwrap().unwrap().world;
             for _ in 0..400 {
                 // what may be forgotten must not matter
-                world.forget_scratch();
+                world.clear_scratch();
                 world.step().unwrap();
             }
             (scene.name, world.state().hash())

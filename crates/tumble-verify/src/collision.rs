@@ -68,7 +68,7 @@ fn free_space(material: Material, dt: f64) -> WorldBuilder {
 /// A clump, a box and a knot that are about to collide.
 fn three_bodies(integrator: Integrator, dt: f64) -> Result<World, Error> {
     let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::new(0.3, 0.4, 0.9)];
-    let clump = Shape::of_particles(&corners.map(|corner| corner * 0.1))?;
+    let clump = Shape::from_particles(&corners.map(|corner| corner * 0.1))?;
     let clump = Body::new(clump).mass(1.5).surface(Surface::Spheres { radius: 0.05 });
     let knot = mesh_body(Primitive::Knot { radius: 0.08, tube_radius: 0.025, segments: 12 })?;
     let cuboid = mesh_body(Primitive::Box { size: DVec3::new(0.2, 0.1, 0.15), divisions: 4 })?;

@@ -94,7 +94,7 @@ fn bounce() -> Outcome {
             Some(tolerance) => format!("energy_tolerance = {tolerance:e}"),
             None => "fixed step".to_owned(),
         };
-        let remark = format!("{} force evaluations", world.state().tally.evaluations);
+        let remark = format!("{} force evaluations", world.state().totals.evaluations);
         let quantity = format!("change of energy in flight, relative, {setting}");
         checks.push(Check::error(quantity, worst, energy_bound, "").remark(remark));
         // near the apex v = −g (t − t_apex)
@@ -157,7 +157,7 @@ fn cat() -> Outcome {
         }
         let setting =
             tolerance.map_or("fixed step".to_owned(), |t| format!("energy_tolerance = {t}"));
-        let remark = format!("{} force evaluations", world.state().tally.evaluations);
+        let remark = format!("{} force evaluations", world.state().totals.evaluations);
         let quantity = format!("change of energy over 60 s, relative, {setting}");
         checks.push(Check::error(quantity, worst, bound, "").remark(remark));
     }

@@ -79,7 +79,7 @@ fn drag() -> Outcome {
     for (c, dt) in [(1.0, 1e-3), (1.0, 0.1), (50.0, 0.1), (1e4, 1e-3)] {
         // four particles of 1 kg: γ = c
         let points = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO];
-        let body = Body::new(Shape::of_particles(&points)?).position(DVec3::ZERO).velocity(v);
+        let body = Body::new(Shape::from_particles(&points)?).position(DVec3::ZERO).velocity(v);
         let body = body.angular_velocity(DVec3::new(1.0, 2.0, 3.0));
         let world = World::builder().dt(dt).velocity_damping_stiffness(c).body(body);
         let mut world = world.build()?;
@@ -109,7 +109,7 @@ fn top_in_drag() -> Result<Check, Error> {
     let points = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y, DVec3::Z * 0.5, DVec3::Z * -0.5];
     let (across, along, c, time) = (2.5, 4.0, 0.7, 2.0);
     let omega = DVec3::new(3.0, 0.0, 11.0);
-    let body = Body::new(Shape::of_particles(&points)?).angular_velocity(omega);
+    let body = Body::new(Shape::from_particles(&points)?).angular_velocity(omega);
     let world = World::builder().gravity(DVec3::ZERO).velocity_damping_stiffness(c).dt(0.05);
     let mut world = world.body(body).build()?;
     step_until(&mut world, time)?;
@@ -125,7 +125,7 @@ fn top_in_drag() -> Result<Check, Error> {
 /// `product` is the time step times the rate N c/M at which drag slows the ball; it may exceed 1.
 fn terminal_speed(product: f64) -> Result<Check, Error> {
     let ball = Primitive::Sphere { radius: 0.1, subdivisions: 1 }.mesh()?;
-    let shape = Shape::of_mesh(&ball, Sampling::Vertices, MassModel::Solid)?;
+    let shape = Shape::from_mesh(&ball, Sampling::Vertices, MassModel::Solid)?;
     let (mass, c) = (1.0, 1.0);
     let rate = c * shape.moments().count / mass;
     let body = Body::new(shape).mass(mass).velocity(DVec3::Y * (-G / rate));

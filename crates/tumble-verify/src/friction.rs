@@ -40,7 +40,7 @@ fn block(material: &Material) -> Result<Body, Error> {
     };
     let points: Vec<_> = (0..8).map(corner).collect();
     let depth = G / (4.0 * material.collision_stiffness);
-    Ok(Body::new(Shape::of_particles(&points)?).mass(1.0).position(DVec3::Y * (0.05 - depth)))
+    Ok(Body::new(Shape::from_particles(&points)?).mass(1.0).position(DVec3::Y * (0.05 - depth)))
 }
 
 fn sliding() -> Outcome {
@@ -108,7 +108,7 @@ fn rolling() -> Outcome {
         })
         .collect();
     let gyration = DMat3::IDENTITY * (0.4 * radius * radius);
-    let shape = Shape::of_distribution(&circle, Mesh::default(), DVec3::ZERO, gyration)?;
+    let shape = Shape::from_distribution(&circle, Mesh::default(), DVec3::ZERO, gyration)?;
     let material = Material {
         collision_stiffness: 1e6,
         damping: Damping::Dashpot(10.0),

@@ -44,7 +44,7 @@ fn thrown(length: f64, mass: f64, time: f64) -> Result<World, Error> {
         .velocity_damping_stiffness(0.01 * mass / time)
         .dt(1e-4 * time)
         .material(material)
-        .wall_of(FLOOR, MaterialOverride::default())
+        .wall_with_material(FLOOR, MaterialOverride::default())
         .body(body);
     Ok(world.build()?)
 }

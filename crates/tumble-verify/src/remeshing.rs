@@ -90,7 +90,7 @@ fn bounce(
 }
 
 fn solid(mesh: &Mesh) -> Result<Shape, Error> {
-    Ok(Shape::of_mesh(mesh, Sampling::Vertices, MassModel::Solid)?)
+    Ok(Shape::from_mesh(mesh, Sampling::Vertices, MassModel::Solid)?)
 }
 
 fn geodesic(subdivisions: u32) -> Result<Mesh, Error> {
@@ -289,7 +289,7 @@ fn plate() -> Result<Check, Error> {
         }
     }
     let mesh = Mesh::new(vertices, triangles)?;
-    let shape = Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Shell)?;
+    let shape = Shape::from_mesh(&mesh, Sampling::Vertices, MassModel::Shell)?;
     let material = Material { damping: Damping::Restitution(0.2), ..per_area() };
     let body = Body::new(shape).mass(MASS).position(DVec3::ZERO);
     // At rest the dashpot acts on the velocity change of each kick, which changes the depth by about g h².

@@ -38,7 +38,7 @@ pub(crate) fn material(k: f64, e: f64, friction: f64) -> Material {
 
 /// A single particle of 1 kg at `height` (m) above the floor y = 0.
 pub(crate) fn particle(height: f64) -> Result<Body, Error> {
-    let shape = Shape::of_particles(&[DVec3::ZERO])?;
+    let shape = Shape::from_particles(&[DVec3::ZERO])?;
     Ok(Body::new(shape).mass(1.0).position(DVec3::Y * height))
 }
 
@@ -46,19 +46,19 @@ pub(crate) fn particle(height: f64) -> Result<Body, Error> {
 pub(crate) fn body_with_moments(moments: DVec3) -> Result<Body, Error> {
     let points = [DVec3::X, -DVec3::X];
     let gyration = DMat3::from_diagonal(moments);
-    let shape = Shape::of_distribution(&points, Mesh::default(), DVec3::ZERO, gyration)?;
+    let shape = Shape::from_distribution(&points, Mesh::default(), DVec3::ZERO, gyration)?;
     Ok(Body::new(shape).mass(1.0))
 }
 
 /// A solid ball: one sphere with the inertia 2/5 M R². `radius` in m, `mass` in kg.
 pub(crate) fn ball(radius: f64, mass: f64) -> Result<Body, Error> {
     let gyration = DMat3::IDENTITY * (0.4 * radius * radius);
-    let shape = Shape::of_distribution(&[DVec3::ZERO], Mesh::default(), DVec3::ZERO, gyration)?;
+    let shape = Shape::from_distribution(&[DVec3::ZERO], Mesh::default(), DVec3::ZERO, gyration)?;
     Ok(Body::new(shape).mass(mass).surface(Surface::Spheres { radius }))
 }
 
 /// A solid body whose contact surface is the mesh of a primitive.
 pub(crate) fn mesh_body(primitive: Primitive) -> Result<Body, Error> {
-    let shape = Shape::of_mesh(&primitive.mesh()?, Sampling::Vertices, MassModel::Solid)?;
+    let shape = Shape::from_mesh(&primitive.mesh()?, Sampling::Vertices, MassModel::Solid)?;
     Ok(Body::new(shape).surface(Surface::Mesh))
 }

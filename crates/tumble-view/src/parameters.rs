@@ -24,7 +24,7 @@ pub fn parameters(scene: &Scene) -> Vec<Parameter> {
         list.log("energy_tolerance", tolerance, "", (1e-12, 1e-2));
     }
     list.material("collision", &scene.collision.into());
-    if let Some(walls) = &scene.walls_of_box {
+    if let Some(walls) = &scene.box_walls {
         list.material("box", &walls.material);
     }
     for (index, wall) in scene.walls.iter().enumerate().take(MAX_TABLES) {

@@ -35,7 +35,7 @@ pub struct Session {
     backlog: f64,
     /// See [`Session::reference_energy`]; without the work of the mouse spring.
     reference_energy: f64,
-    mouse_spring: Option<Pull>,
+    mouse_spring: Option<MouseSpring>,
     error: Option<String>,
     revision: u64,
 }
@@ -108,7 +108,7 @@ impl Session {
     /// The energy from which the residual of the ledger is measured (J): the total at t = 0, plus what edits
     /// and the mouse spring have added since. The residual is then the error of the integrator alone.
     pub fn reference_energy(&self) -> f64 {
-        self.reference_energy + self.world.pulled()
+        self.reference_energy + self.world.mouse_spring_work()
     }
 
     /// Executes a command. Returns the scene file for [`Command::Save`], `None` for all others.
@@ -183,7 +183,7 @@ impl Session {
             let residual = self.world.energy().total() - self.reference_energy();
             self.reference_energy = world.energy().total() - residual;
             // attach the mouse spring to the new world, unless its particle no longer exists
-            self.mouse_spring = self.mouse_spring.filter(|&spring| world.pull(Some(spring)));
+            self.mouse_spring = self.mouse_spring.filter(|&spring| world.set_mouse_spring(Some(spring)));
             (self.scene, self.world, self.backlog) = (scene, world, 0.0);
         } else if !self.pending.contains(&edit.key) {
             self.pending.push(edit.key.clone());
@@ -206,8 +206,8 @@ impl Session {
         particle: usize,
         target: [f64; 3],
     ) -> Result<(), String> {
-        let spring = Pull { body, particle, target: target.into() };
-        if !self.world.pull(Some(spring)) {
+        let spring = MouseSpring { body, particle, target: target.into() };
+        if !self.world.set_mouse_spring(Some(spring)) {
             return Err(format!(
                 "there is no particle {particle} in body {body} that the mouse spring could pull"
             ));
@@ -223,7 +223,7 @@ impl Session {
 
     fn release_spring(&mut self) {
         self.mouse_spring = None;
-        self.world.pull(None);
+        self.world.set_mouse_spring(None);
     }
 
     /// Adds elapsed clock time. While the simulation is playing, it becomes simulated time that is due.

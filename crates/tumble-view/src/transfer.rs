@@ -42,7 +42,7 @@ pub fn transfer_state(old: &World, new: &mut World) -> Result<(), String> {
     }
     // the energy error carried by refined steps is only compensated by refined steps
     if after.energy_tolerance.is_none() {
-        state.bodies.iter_mut().for_each(|body| body.energy_owed = 0.0);
+        state.bodies.iter_mut().for_each(|body| body.energy_excess = 0.0);
     }
     for (name, body) in after.names.iter().zip(&state.bodies) {
         if after.walls.iter().any(|wall| wall.depth(body.position) > 0.0)

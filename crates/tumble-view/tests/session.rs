@@ -356,7 +356,7 @@ fn the_mouse_spring_pulls_a_body_and_its_work_is_not_in_the_residual() {
     assert!((position - DVec3::new(-0.5, 0.6, 0.5)).length() < 0.1, "{position}");
     assert!(session.reference_energy() > before, "the mouse spring does work");
     let residual = session.world().energy().total() - session.reference_energy();
-    let scale = session.world().energy().kinetic + session.world().pulled();
+    let scale = session.world().energy().kinetic + session.world().mouse_spring_work();
     assert!(residual.abs() < 0.02 * scale, "{residual} {scale}");
     // an edit keeps the spring attached, a reset releases it
     send(&mut session, "{\"type\":\"set\",\"key\":\"gravity.1\",\"value\":-1.62}").unwrap();

@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5)
         .map(|corner| corner * DVec3::new(0.3, 0.2, 0.1))
         .collect();
-    let body = Body::new(Shape::of_particles(&r)?)
+    let body = Body::new(Shape::from_particles(&r)?)
         .particle_mass(M)
         .velocity(DVec3::new(4.0, 2.0, 3.0))
         .angular_velocity(DVec3::new(1.0, 20.0, 2.0));
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .velocity_damping_stiffness(C)
         .dt(H)
         .integrator(Integrator::Euler)
-        .walls_of_box(&WallBox::arena()) // springs of 1e4 N/m, no dashpots, no friction
+        .box_walls(&WallBox::arena()) // springs of 1e4 N/m, no dashpots, no friction
         .body(body)
         .build()?;
 

@@ -8,7 +8,7 @@ use tumble::{Body, DVec3, Damping, Material, Shape, WallBox, World};
 /// A rod of particles that bounces and slides in a box. Every call builds the same world.
 fn world() -> Result<World, Box<dyn std::error::Error>> {
     let rod: Vec<DVec3> = (0..10).map(|i| DVec3::new(0.03 * f64::from(i), 0.0, 0.0)).collect();
-    let body = Body::new(Shape::of_particles(&rod)?)
+    let body = Body::new(Shape::from_particles(&rod)?)
         .mass(1.0)
         .velocity(DVec3::new(2.0, 0.0, 1.0))
         .angular_velocity(DVec3::new(0.0, 5.0, 8.0));
@@ -18,7 +18,7 @@ fn world() -> Result<World, Box<dyn std::error::Error>> {
         ..Material::default()
     };
     let builder = World::builder().dt(1e-4).material(material);
-    Ok(builder.walls_of_box(&WallBox::arena()).body(body).build()?)
+    Ok(builder.box_walls(&WallBox::arena()).body(body).build()?)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

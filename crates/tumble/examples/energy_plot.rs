@@ -29,7 +29,7 @@ const CURVES: [Curve; 6] = [
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let size = DVec3::new(0.3, 0.2, 0.2);
     let mesh = Primitive::Box { size, divisions: 4 }.mesh()?;
-    let body = Body::new(Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Solid)?)
+    let body = Body::new(Shape::from_mesh(&mesh, Sampling::Vertices, MassModel::Solid)?)
         .mass(2.0)
         .position(DVec3::new(0.0, 0.5, 0.0))
         .orientation(DQuat::from_xyzw(0.1, 0.2, 0.15, 0.95));

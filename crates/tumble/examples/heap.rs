@@ -5,7 +5,7 @@
 //! about 0.5 (loose) and 0.74 (spheres in a crystal).
 
 use tumble::{
-    Body, DVec3, Damping, Material, Mesh, Shape, Surface, WallBox, World, ball_integrals,
+    Body, DVec3, Damping, Material, Mesh, Shape, Surface, WallBox, World, sphere_union_integrals,
 };
 
 const RADIUS: f64 = 0.04; // of each sphere (m)
@@ -15,10 +15,10 @@ const SIDE: f64 = 0.4; // of the box's floor (m)
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // three spheres at the corners of a triangle; overlaps count once in volume, mass and inertia
     let centres = [DVec3::ZERO, 0.05 * DVec3::X, DVec3::new(0.025, 0.04, 0.0)];
-    let solid = ball_integrals(&centres, RADIUS)?;
+    let solid = sphere_union_integrals(&centres, RADIUS)?;
     let volume = solid.measure;
     let gyration = solid.inertia() * (1.0 / volume);
-    let shape = Shape::of_distribution(&centres, Mesh::default(), solid.centre, gyration)?;
+    let shape = Shape::from_distribution(&centres, Mesh::default(), solid.centre, gyration)?;
     let clump =
         Body::new(shape).mass(DENSITY * volume).surface(Surface::Spheres { radius: RADIUS });
 
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         friction_stiffness: 0.3,            // Coulomb's coefficient
         ..Material::default()
     };
-    let mut builder = World::builder().dt(1e-4).material(material).walls_of_box(&walls);
+    let mut builder = World::builder().dt(1e-4).material(material).box_walls(&walls);
     // a loose lattice of 3 × 16 × 3 bodies, nudged so that no two fall alike
     for i in 0..144u32 {
         let (column, layer) = (i % 9, i / 9);

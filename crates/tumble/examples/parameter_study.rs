@@ -43,7 +43,7 @@ fn bounce_height(restitution: f64) -> Result<f64, Box<dyn Error + Send + Sync>> 
         .dt(2e-5)
         .material(material)
         .wall(floor)
-        .body(Body::new(Shape::of_particles(&[DROP * DVec3::Y])?))
+        .body(Body::new(Shape::from_particles(&[DROP * DVec3::Y])?))
         .build()?;
     // down and through the bounce, then up to the highest point
     let rises = |world: &World| world.body(0).velocity().y > 0.0;

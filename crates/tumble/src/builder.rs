@@ -59,8 +59,8 @@ impl WorldBuilder {
             }
         }
         errors.extend(duplicate_names(&model));
-        if errors.is_empty() && model.meets && self.overlaps == Overlaps::Push {
-            crate::stage::push_apart(&model, &mut state);
+        if errors.is_empty() && model.has_body_contact && self.overlaps == Overlaps::Push {
+            crate::contact::initial_overlap::separate(&model, &mut state);
         }
         errors.extend(overlaps(&model, &state));
         errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && !self.force).map(

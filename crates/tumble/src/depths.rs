@@ -9,29 +9,29 @@ use crate::{Model, State};
 ///
 /// Contact by springs always involves some penetration; compare these values with the size of the bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Depths {
+pub struct PenetrationDepths {
     /// The largest depth between two bodies.
     pub bodies: f64,
     /// The largest depth behind a wall.
     pub walls: f64,
 }
 
-impl Depths {
+impl PenetrationDepths {
     /// The depths of a state.
-    pub fn of(model: &Model, state: &State) -> Self {
+    pub fn new(model: &Model, state: &State) -> Self {
         Self::with(model, state, BodyContacts::default())
     }
 
-    /// As [`Depths::of`], with contact data that may be reused.
-    pub(crate) fn with(model: &Model, state: &State, mut meeting: Meeting) -> Self {
-        let [bodies, mut walls] = meeting.depths(model, state);
+    /// As [`PenetrationDepths::new`], reusing the neighbour lists of `contacts`.
+    pub(crate) fn with(model: &Model, state: &State, mut contacts: BodyContacts) -> Self {
+        let [bodies, mut walls] = contacts.max_depths(model, state);
         let bodies_and_states = model.bodies.iter().zip(&state.bodies);
         // spheres against walls are among the contacts above
         for (body, state) in
             bodies_and_states.filter(|(body, _)| body.is_free() && !body.has_spheres())
         {
-            let place = Placed::new(body, state);
-            let deepest = model.walls.iter().map(|wall| place.depth_behind(wall));
+            let kinematics = Kinematics::new(body, state);
+            let deepest = model.walls.iter().map(|wall| depth_behind(&kinematics, wall));
             walls = deepest.fold(walls, f64::max);
         }
         Self { bodies, walls }
@@ -44,7 +44,7 @@ mod tests {
 
     fn ball(x: f64, surface: Surface) -> Body {
         let shape =
-            Shape::of_distribution(&[DVec3::ZERO], Mesh::default(), DVec3::ZERO, DMat3::IDENTITY);
+            Shape::from_distribution(&[DVec3::ZERO], Mesh::default(), DVec3::ZERO, DMat3::IDENTITY);
         Body::new(shape.unwrap()).surface(surface).position(DVec3::X * x)
     }
 
@@ -55,12 +55,12 @@ mod tests {
         let wall = WallPlane { normal: DVec3::X, offset: 0.0 };
         let pair =
             || World::builder().wall(wall).body(ball(0.098, spheres)).body(ball(0.297, spheres));
-        let depths = pair().build().unwrap().contact_depths();
+        let depths = pair().build().unwrap().penetration_depths();
         assert!((depths.bodies - 1e-3).abs() < 1e-12, "{depths:?}");
         assert!((depths.walls - 2e-3).abs() < 1e-12, "{depths:?}");
         let bare = pair().body(ball(-4e-3, Surface::None)).build().unwrap();
-        assert_eq!(bare.contact_depths().walls, 4e-3);
+        assert_eq!(bare.penetration_depths().walls, 4e-3);
         let alone = World::builder().wall(wall).body(ball(1.0, spheres)).build().unwrap();
-        assert_eq!(alone.contact_depths(), ContactDepths::default());
+        assert_eq!(alone.penetration_depths(), PenetrationDepths::default());
     }
 }

@@ -25,12 +25,12 @@ pub struct Energy {
 
 impl Energy {
     /// The ledger of a state.
-    pub fn of(model: &Model, state: &State) -> Self {
+    pub fn new(model: &Model, state: &State) -> Self {
         Self::with(model, state, BodyContacts::default())
     }
 
-    /// As [`Energy::of`], with contact data that may be reused.
-    pub(crate) fn with(model: &Model, state: &State, mut meeting: Meeting) -> Self {
+    /// As [`Energy::new`], reusing the neighbour lists of `contacts`.
+    pub(crate) fn with(model: &Model, state: &State, mut contacts: BodyContacts) -> Self {
         let mut energy = Self {
             drag: state.totals.drag,
             dashpot: state.totals.dashpot,

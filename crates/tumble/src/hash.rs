@@ -8,8 +8,8 @@ impl State {
     /// The first 16 bytes of the SHA-256 of the state, in hexadecimal.
     ///
     /// The state is hashed as little-endian numbers: step, time, then for each body position, velocity,
-    /// orientation (w, x, y, z), `orientation_rest`, angular momentum, `energy_owed` and friction springs, then
-    /// the friction springs between bodies, then the tally (with its work unless that is zero). Two states with
+    /// orientation (w, x, y, z), `orientation_rest`, angular momentum, `energy_excess` and friction springs, then
+    /// the friction springs between bodies, then the totals (with its work unless that is zero). Two states with
     /// equal hashes are equal bit for bit.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();
@@ -23,7 +23,7 @@ impl State {
                 [q.w, q.x, q.y, q.z].into_iter().for_each(&mut put);
             }
             body.angular_momentum.to_array().into_iter().for_each(&mut put);
-            put(body.energy_owed);
+            put(body.energy_excess);
             put(f64::from_bits(springs.len() as u64));
             for spring in springs {
                 put(f64::from(spring.wall));

@@ -12,16 +12,16 @@
 //! - [`World`]: bodies of these shapes among walls. Build it, step it, read it.
 //! - [`step::step`]: the step, as a list of [`stage`]s. Start here to read the physics.
 //! - [`Model`], [`State`], [`Scratch`]: what is constant, what evolves, what may be forgotten.
-//! - [`Energy`]: where every joule is. [`ContactDepths`]: how deep contacts are.
+//! - [`Energy`]: where every joule is. [`PenetrationDepths`]: how deep contacts are.
 //!
 //! ```
 //! use tumble::{Body, DVec3, Shape, WallBox, World};
 //!
 //! let corners = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO].map(|p| 0.3 * p);
 //! let mut world = World::builder()
-//!     .walls_of_box(&WallBox::arena())
+//!     .box_walls(&WallBox::arena())
 //!     .body(
-//!         Body::new(Shape::of_particles(&corners)?)
+//!         Body::new(Shape::from_particles(&corners)?)
 //!             .velocity(DVec3::new(4.0, 2.0, 3.0))
 //!             .angular_velocity(DVec3::new(0.0, 100.0, 0.0)),
 //!     )
@@ -65,7 +65,7 @@ mod wrench;
 
 pub use batch::{Batch, for_each_batch};
 pub use builder::{Body, WorldBuilder};
-pub use depths::ContactDepths;
+pub use depths::PenetrationDepths;
 pub use distance::{Nearest, SignedDistance, SurfaceError};
 pub use energy::Energy;
 pub use error::{BuildError, BuildErrors, StepError};
@@ -78,9 +78,9 @@ pub use pair_material::{PairDamping, PairMaterial};
 pub use restore::StateError;
 pub use scratch::Scratch;
 pub use shape::{
-    AreaError, BallsError, Closedness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties,
+    AreaError, SphereUnionError, Watertightness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties,
     Mesh, MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError,
-    PrincipalAxes, SampleError, Sampling, Shape, ShapeError, ShellError, ball_integrals,
+    PrincipalAxes, SampleError, Sampling, Shape, ShapeError, ShellError, sphere_union_integrals,
 };
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::MouseSpring;

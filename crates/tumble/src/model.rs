@@ -47,9 +47,9 @@ pub struct Model {
     /// The walls.
     pub walls: Vec<WallPlane>,
     /// The smallest distance between two opposite walls (m).
-    pub gap: Option<f64>,
+    pub wall_gap: Option<f64>,
     /// Whether any body has a surface for contact with other bodies.
-    pub meets: bool,
+    pub has_body_contact: bool,
     /// One entry per body. Identical bodies share an entry, which improves the use of caches.
     pub bodies: Vec<Arc<BodyModel>>,
     /// The names of the bodies.
@@ -84,7 +84,7 @@ pub struct BodyModel {
     /// The surface for contact with other bodies.
     pub surface: Surface,
     /// The signed distance to its mesh, if that is its surface.
-    pub solid: Option<Arc<SignedDistance>>,
+    pub signed_distance: Option<Arc<SignedDistance>>,
     /// How the body moves.
     pub motion: Motion,
 }
@@ -122,7 +122,7 @@ impl BodyModel {
     }
 
     /// The bounding radius of the particles about the centre of mass (m), with a margin for rounding.
-    pub fn reach(&self) -> f64 {
+    pub fn bounding_radius(&self) -> f64 {
         self.shape.radius() * (1.0 + 1e-9)
     }
 

@@ -14,21 +14,21 @@ pub(crate) fn run<T: Send>(body_count: usize, work: impl FnOnce() -> T + Send) -
 }
 
 /// Whether there is only one thread.
-pub(crate) fn is_alone() -> bool {
+pub(crate) fn is_single_threaded() -> bool {
     rayon::current_num_threads() == 1
 }
 
 /// Calls `work` with the index and contents of each chunk, in parallel.
-pub(crate) fn each<T: Send>(chunks: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
-    if chunks.len() < 2 || is_alone() {
+pub(crate) fn for_each<T: Send>(chunks: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
+    if chunks.len() < 2 || is_single_threaded() {
         chunks.iter_mut().enumerate().for_each(|(index, chunk)| work(index, chunk));
     } else {
         chunks.par_iter_mut().enumerate().for_each(|(index, chunk)| work(index, chunk));
     }
 }
 
-/// As [`each`], over two slices of chunks together.
-pub(crate) fn each_of_two<T: Send, U: Send>(
+/// As [`for_each`], over two slices of chunks together.
+pub(crate) fn for_each_zipped<T: Send, U: Send>(
     chunks: &mut [T],
     others: &mut [U],
     work: impl Fn(usize, &mut T, &mut U) + Sync,

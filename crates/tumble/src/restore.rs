@@ -107,7 +107,7 @@ impl State {
                 ("orientation", (q.length() - 1.0).abs() <= 1e-6),
                 ("orientation_rest", state.orientation_rest.is_finite()),
                 ("angular_momentum", state.angular_momentum.is_finite()),
-                ("energy_owed", state.energy_owed.is_finite()),
+                ("energy_excess", state.energy_excess.is_finite()),
             ];
             check_values(name, &values)?;
         }
@@ -115,7 +115,7 @@ impl State {
             check_springs(body, name, springs)?;
         }
         check_pair_springs(model, &self.pair_springs)?;
-        let tally = &self.tally;
+        let totals = &self.totals;
         let values = [
             ("drag", totals.drag.is_finite()),
             ("dashpot", totals.dashpot.is_finite()),
@@ -183,9 +183,9 @@ fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)>
         ((particle as usize) < particles.len()).then(|| particles.slot_of(particle))
     };
     let a = body(first)?;
-    let has_valid_other = kind == ContactKind::Spheres || other == 0;
+    let has_valid_other = kind == ContactKind::SphereSphere || other == 0;
     let (particle, other) = match kind {
-        ContactKind::Wall => {
+        ContactKind::SphereWall => {
             let is_possible =
                 a.has_spheres() && a.is_free() && (second as usize) < a.contacts.len();
             (slot(first, particle).filter(|_| is_possible)?, 0)

@@ -111,7 +111,7 @@ mod tests {
     fn ball(at: DVec3) -> Body {
         let inertia = DMat3::IDENTITY * 0.4;
         let mesh = crate::Mesh::default();
-        let shape = Shape::of_distribution(&[DVec3::ZERO], mesh, DVec3::ZERO, inertia).unwrap();
+        let shape = Shape::from_distribution(&[DVec3::ZERO], mesh, DVec3::ZERO, inertia).unwrap();
         Body::new(shape).mass(1.0).surface(Surface::Spheres { radius: 1.0 }).position(at)
     }
 

@@ -17,7 +17,7 @@ pub struct State {
     /// [`PairSpring`].
     pub pair_springs: Vec<PairSpring>,
     /// Accumulated losses and extremes.
-    pub tally: Tally,
+    pub totals: RunTotals,
 }
 
 /// The state of one body.
@@ -36,7 +36,7 @@ pub struct BodyState {
     pub angular_momentum: DVec3,
     /// Energy (J) gained by the error of refined steps in contact and not yet removed; 0 without
     /// `energy_tolerance`.
-    pub energy_owed: f64,
+    pub energy_excess: f64,
 }
 
 impl Default for BodyState {
@@ -48,7 +48,7 @@ impl Default for BodyState {
             orientation: DQuat::IDENTITY,
             orientation_rest: NO_REST,
             angular_momentum: DVec3::ZERO,
-            energy_owed: 0.0,
+            energy_excess: 0.0,
         }
     }
 }
@@ -82,9 +82,9 @@ pub struct PairSpring {
     pub second: u32,
     /// The kind of contact.
     pub kind: ContactKind,
-    /// The index of the particle, of `second` for [`ContactKind::SecondInFirst`], else of `first`.
+    /// The index of the particle, of `second` for [`ContactKind::MeshPoint`], else of `first`.
     pub particle: u32,
-    /// The index of the particle of `second` for [`ContactKind::Spheres`], else 0.
+    /// The index of the particle of `second` for [`ContactKind::SphereSphere`], else 0.
     pub other: u32,
     /// The elongation at the latest kick (m), tangential, world axes: the displacement of the first body relative to
     /// the second.
@@ -104,13 +104,13 @@ pub(crate) fn pair_order(first: u32, second: u32, kind: ContactKind) -> PairOrde
 #[repr(u8)]
 pub enum ContactKind {
     /// A sphere of the first body against a wall.
-    Wall,
+    SphereWall,
     /// A sphere or particle of the first body against one of the second.
-    Spheres,
+    SphereSphere,
     /// A sphere or particle of the first body against the mesh of the second.
-    FirstInSecond,
-    /// A sphere or particle of the second body against the mesh of the first.
-    SecondInFirst,
+    PointMesh,
+    /// The mesh of the first body against a sphere or particle of the second.
+    MeshPoint,
 }
 
 /// Sums and extremes over the steps taken so far.
@@ -130,7 +130,7 @@ pub struct RunTotals {
     pub evaluations: u64,
 }
 
-impl Tally {
+impl RunTotals {
     /// The sum of all losses (J).
     pub fn lost(&self) -> f64 {
         self.drag + self.dashpot + self.slip

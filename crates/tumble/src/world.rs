@@ -6,7 +6,7 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::stage::{self, MouseSpring};
 use crate::{
-    BodyForces, BodyModel, BodyState, Depths, Energy, Model, Scratch, State, StateError, StepError,
+    BodyForces, BodyModel, BodyState, PenetrationDepths, Energy, Model, Scratch, State, StateError, StepError,
     Wrench, step::step,
 };
 
@@ -17,14 +17,14 @@ pub struct World {
     state: State,
     scratch: Scratch,
     /// The mouse spring. It is an external input and not part of the state.
-    pull: Option<Pull>,
+    mouse_spring: Option<MouseSpring>,
     /// The work of the mouse spring (J).
-    pulled: f64,
+    mouse_spring_work: f64,
 }
 
 impl World {
     pub(crate) fn new(model: Model, state: State) -> Self {
-        Self { model, state, scratch: Scratch::default(), pull: None, pulled: 0.0 }
+        Self { model, state, scratch: Scratch::default(), mouse_spring: None, mouse_spring_work: 0.0 }
     }
 
     /// Advances time by one step of [`World::dt`].
@@ -32,14 +32,14 @@ impl World {
     /// # Errors
     /// [`StepError`] if the new state is not valid. The world keeps that state for inspection.
     pub fn step(&mut self) -> Result<(), StepError> {
-        let Some(pull) = self.pull else {
+        let Some(spring) = self.mouse_spring else {
             return step(&self.model, &mut self.state, &mut self.scratch);
         };
         // half of the impulse before the step and half after
         let h = 0.5 * self.model.dt;
-        self.pulled += stage::pull(&self.model, &mut self.state, &pull, h);
+        self.mouse_spring_work += stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
         step(&self.model, &mut self.state, &mut self.scratch)?;
-        self.pulled += stage::pull(&self.model, &mut self.state, &pull, h);
+        self.mouse_spring_work += stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
         Ok(())
     }
 
@@ -47,38 +47,38 @@ impl World {
     ///
     /// Returns false, and changes nothing, if the body does not exist or is not free, the particle does not exist,
     /// or the target is not finite.
-    pub fn pull(&mut self, pull: Option<Pull>) -> bool {
-        let is_valid = pull.is_none_or(|Pull { body, particle, target }| {
+    pub fn set_mouse_spring(&mut self, spring: Option<MouseSpring>) -> bool {
+        let is_valid = spring.is_none_or(|MouseSpring { body, particle, target }| {
             let body = self.model.bodies.get(body);
             let has_particle =
                 |body: &Arc<BodyModel>| body.is_free() && particle < body.shape.particles().len();
             body.is_some_and(has_particle) && target.is_finite()
         });
         if is_valid {
-            self.pull = pull;
+            self.mouse_spring = spring;
         }
         is_valid
     }
 
     /// The total work of the mouse spring (J), which [`World::energy`] has gained.
-    pub fn pulled(&self) -> f64 {
-        self.pulled
+    pub fn mouse_spring_work(&self) -> f64 {
+        self.mouse_spring_work
     }
 
     /// Replaces the state, for example by one from a checkpoint. Later steps are the same, bit for bit, as in the
-    /// run from which the state was taken. The mouse spring is removed, and [`World::pulled`] is reset to zero.
+    /// run from which the state was taken. The mouse spring is removed, and [`World::mouse_spring_work`] is reset to zero.
     ///
     /// # Errors
     /// [`StateError`] if the state does not fit the model. The world then keeps its own state.
     pub fn restore(&mut self, state: State) -> Result<(), StateError> {
         state.fits(&self.model)?;
         (self.state, self.scratch) = (state, Scratch::default());
-        (self.mouse_spring, self.mouse_work) = (None, 0.0);
+        (self.mouse_spring, self.mouse_spring_work) = (None, 0.0);
         Ok(())
     }
 
     /// Drops all cached data. No result changes.
-    pub fn forget_scratch(&mut self) {
+    pub fn clear_scratch(&mut self) {
         self.scratch = Scratch::default();
     }
 
@@ -131,8 +131,8 @@ impl World {
     }
 
     /// The largest penetration depths now.
-    pub fn depths(&self) -> Depths {
-        Depths::with(&self.model, &self.state, self.scratch.meeting.for_a_look())
+    pub fn penetration_depths(&self) -> PenetrationDepths {
+        PenetrationDepths::with(&self.model, &self.state, self.scratch.body_contacts.for_query())
     }
 
     /// The energy ledger now.

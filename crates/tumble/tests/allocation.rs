@@ -17,7 +17,7 @@ fn heavy_contact(friction: f64, energy_tolerance: Option<f64>) -> World {
         .dt(1e-3)
         .gravity(DVec3::new(-5.0, -9.8, -5.0))
         .material(material)
-        .walls_of_box(&WallBox::arena())
+        .box_walls(&WallBox::arena())
         .body(
             Body::new(shape)
                 .position(DVec3::splat(-0.72))

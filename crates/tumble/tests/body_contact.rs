@@ -8,18 +8,18 @@ use tumble::{
 
 fn ball(radius: f64) -> Shape {
     let gyration = tumble::DMat3::IDENTITY * (0.4 * radius * radius);
-    Shape::of_distribution(&[DVec3::ZERO], Mesh::default(), DVec3::ZERO, gyration).unwrap()
+    Shape::from_distribution(&[DVec3::ZERO], Mesh::default(), DVec3::ZERO, gyration).unwrap()
 }
 
 fn clump() -> Shape {
     let corner =
         |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) - 0.5;
     let corners: Vec<_> = (0..8).map(|i| corner(i) * 0.1).collect();
-    Shape::of_particles(&corners).unwrap()
+    Shape::from_particles(&corners).unwrap()
 }
 
 fn solid(primitive: Primitive) -> Shape {
-    Shape::of_mesh(&primitive.mesh().unwrap(), Sampling::Vertices, MassModel::Solid).unwrap()
+    Shape::from_mesh(&primitive.mesh().unwrap(), Sampling::Vertices, MassModel::Solid).unwrap()
 }
 
 fn space() -> WorldBuilder {
@@ -81,7 +81,7 @@ fn momentum_and_angular_momentum_are_conserved_to_rounding() {
             world.step().unwrap();
         }
         let (p_end, l_end) = momenta(&world);
-        assert!(world.state().tally.max_depth > 1e-4, "{surface:?}: no contact");
+        assert!(world.state().totals.max_depth > 1e-4, "{surface:?}: no contact");
         assert!((p_end - p).length() < 1e-12, "{surface:?} {}", (p_end - p).length());
         assert!((l_end - l).length() < 1e-12, "{surface:?} {}", (l_end - l).length());
     }
@@ -111,7 +111,7 @@ fn dropping_cached_data_does_not_change_any_bit() {
     let (mut kept, mut forgotten) = (make(), make());
     for _ in 0..2000 {
         kept.step().unwrap();
-        forgotten.forget_scratch();
+        forgotten.clear_scratch();
         forgotten.step().unwrap();
     }
     assert!(kept.state().totals.max_depth > 0.0);

@@ -10,15 +10,15 @@ use tumble::{
 
 fn ball(radius: f64) -> Shape {
     let gyration = DMat3::IDENTITY * (0.4 * radius * radius);
-    Shape::of_distribution(&[DVec3::ZERO], Mesh::default(), DVec3::ZERO, gyration).unwrap()
+    Shape::from_distribution(&[DVec3::ZERO], Mesh::default(), DVec3::ZERO, gyration).unwrap()
 }
 
 fn point() -> Shape {
-    Shape::of_particles(&[DVec3::ZERO]).unwrap()
+    Shape::from_particles(&[DVec3::ZERO]).unwrap()
 }
 
 fn solid(primitive: Primitive) -> Shape {
-    Shape::of_mesh(&primitive.mesh().unwrap(), Sampling::Vertices, MassModel::Solid).unwrap()
+    Shape::from_mesh(&primitive.mesh().unwrap(), Sampling::Vertices, MassModel::Solid).unwrap()
 }
 
 fn cube(size: f64) -> Shape {
@@ -98,11 +98,11 @@ fn cached_neighbour_lists_find_contacts_exact_to_rounding() {
         let mut uncached = cached.clone();
         for _ in 0..60 {
             cached.step().unwrap();
-            uncached.forget_scratch();
+            uncached.clear_scratch();
             uncached.step().unwrap();
         }
         assert_eq!(cached.state().hash(), uncached.state().hash(), "{seed}");
-        touched += u32::from(cached.state().tally.max_depth > 0.0);
+        touched += u32::from(cached.state().totals.max_depth > 0.0);
     }
     assert!(touched > 300, "{touched}");
 }
@@ -198,7 +198,7 @@ fn a_centre_exactly_on_a_feature_conserves_momentum_and_energy() {
 #[test]
 fn points_needles_and_unequal_masses_conserve_momenta() {
     let needle: Vec<_> = (0..20).map(|i| DVec3::X * (f64::from(i) * 0.01)).collect();
-    let needle = Arc::new(Shape::of_particles(&needle).unwrap());
+    let needle = Arc::new(Shape::from_particles(&needle).unwrap());
     for integrator in [Integrator::Splitting, Integrator::Euler] {
         for (light, heavy) in [(1.0, 1.0), (1e-6, 1e6)] {
             let k = 1e4 * light;
@@ -256,7 +256,7 @@ fn collision(length: f64, mass: f64, time: f64) -> World {
     let speed = length / time;
     let clump: Vec<_> =
         [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z].map(|p| p * (0.1 * length)).to_vec();
-    let clump = Arc::new(Shape::of_particles(&clump).unwrap());
+    let clump = Arc::new(Shape::from_particles(&clump).unwrap());
     space(material(k, 0.5, 0.4), 0.0001220703125 * time)
         .body(Body::new(Arc::clone(&clump)).mass(2.0 * mass).surface(spheres(0.06 * length)))
         .body(
@@ -311,7 +311,7 @@ fn hollow(outer: f64, inner: f64) -> Shape {
     mesh.vertices.extend(within.vertices);
     mesh.triangles
         .extend(within.triangles.iter().map(|[a, b, c]| [a + start, c + start, b + start]));
-    Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Solid).unwrap()
+    Shape::from_mesh(&mesh, Sampling::Vertices, MassModel::Solid).unwrap()
 }
 
 #[test]
@@ -533,7 +533,7 @@ fn overlapping_bodies_without_a_particle_inside_the_other_are_refused() {
 fn many_bodies_nearly_at_one_position_are_refused_quickly() {
     let mut builder = World::builder().dt(1e-4);
     let clump =
-        std::sync::Arc::new(Shape::of_particles(&[DVec3::X * 0.05, DVec3::X * -0.05]).unwrap());
+        std::sync::Arc::new(Shape::from_particles(&[DVec3::X * 0.05, DVec3::X * -0.05]).unwrap());
     for index in 0..20_000 {
         let turn = DQuat::from_rotation_y(f64::from(index) * 0.1);
         let body = Body::new(clump.clone()).surface(Surface::Spheres { radius: 0.05 });
@@ -551,8 +551,8 @@ fn the_result_does_not_depend_on_the_order_of_the_bodies() {
         let cube: Vec<_> = (0..8)
             .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 0.1)
             .collect();
-        let cube = Body::new(Shape::of_particles(&cube).unwrap()).name("cube").mass(1.0);
-        let ball = Shape::of_particles(&[DVec3::ZERO]).unwrap();
+        let cube = Body::new(Shape::from_particles(&cube).unwrap()).name("cube").mass(1.0);
+        let ball = Shape::from_particles(&[DVec3::ZERO]).unwrap();
         let ball = Body::new(ball).name("ball").mass(1.0);
         let ball = ball.surface(Surface::Spheres { radius: 0.05 });
         let ball = ball.position(DVec3::new(-0.2, 0.01, 0.02)).velocity(DVec3::X * 2.0);

@@ -56,12 +56,12 @@ impl Scene {
     /// The world in these units, at the step `dt` (in units of time).
     fn at(&self, units: Units, dt: f64) -> World {
         let places: Vec<_> = self.points.iter().map(|&p| p * units.length).collect();
-        let mut shape = Shape::of_particles(&places).unwrap();
+        let mut shape = Shape::from_particles(&places).unwrap();
         if self.solid {
             // mass spread otherwise than over the particles
             let gyration = shape.gyration() * 1.5;
             let centre = shape.centre();
-            shape = Shape::of_distribution(&places, Mesh::default(), centre, gyration).unwrap();
+            shape = Shape::from_distribution(&places, Mesh::default(), centre, gyration).unwrap();
         }
         let (position, velocity, omega, orientation) = self.start;
         let body = Body::new(shape)
@@ -368,7 +368,7 @@ proptest! {
         damping in prop_oneof![wild().prop_map(|c| Damping::Dashpot(c.abs())), (0.0..=1.0f64).prop_map(Damping::Restitution)],
         euler in any::<bool>(),
     ) {
-        let Ok(shape) = Shape::of_particles(&points) else { return Ok(()) };
+        let Ok(shape) = Shape::from_particles(&points) else { return Ok(()) };
         let body = Body::new(shape)
             .mass(mass.abs())
             .position(start.0)
@@ -387,7 +387,7 @@ proptest! {
             .integrator(if euler { Integrator::Euler } else { Integrator::Splitting })
             .dt(dt.abs())
             .force(true)
-            .walls_of_box(&WallBox::arena())
+            .box_walls(&WallBox::arena())
             .body(body)
             .build();
         let Ok(mut world) = world else { return Ok(()) };
@@ -411,7 +411,7 @@ proptest! {
 fn fast_slip_is_not_counted_as_spring_energy() {
     let material =
         Material { collision_stiffness: 1e4, friction_stiffness: 0.03, ..Material::default() };
-    let shape = Shape::of_particles(&[DVec3::ZERO]).unwrap();
+    let shape = Shape::from_particles(&[DVec3::ZERO]).unwrap();
     let sag = 9.8 / 1e4;
     let body = Body::new(shape).position(DVec3::Y * -sag).velocity(DVec3::X * 4.0);
     let floor = WallPlane { normal: DVec3::Y, offset: 0.0 };

@@ -6,7 +6,7 @@ use tumble::{Body, DVec3, Integrator, Material, Shape, WallBox, World};
 /// Two seconds of a throw in the arena, for a body with these particles of 1 kg each. `energy_grows` is the allowed
 /// relative growth of mechanical energy.
 fn bounce(name: &str, places: &[DVec3], integrator: Integrator, dt: f64, energy_grows: f64) {
-    let shape = Shape::of_particles(places).unwrap();
+    let shape = Shape::from_particles(places).unwrap();
     let radius = shape.radius();
     let inverse = shape.principal().moments.to_array();
     let least = inverse.into_iter().filter(|&m| m > 0.0).fold(f64::INFINITY, f64::min);
@@ -18,7 +18,7 @@ fn bounce(name: &str, places: &[DVec3], integrator: Integrator, dt: f64, energy_
         .integrator(integrator)
         .dt(dt)
         .material(Material { collision_stiffness: 1e4, ..Material::default() })
-        .walls_of_box(&WallBox::arena())
+        .box_walls(&WallBox::arena())
         .body(body)
         .build()
         .unwrap();

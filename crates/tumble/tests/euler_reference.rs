@@ -27,7 +27,7 @@ fn pair(
     walls: &[WallPlane],
     start: (DVec3, DVec3, DVec3, DQuat),
 ) -> Option<(World, Reference)> {
-    let shape = Shape::of_particles(points).ok()?;
+    let shape = Shape::from_particles(points).ok()?;
     let reference = Reference {
         r: shape.particles().iter().collect(),
         m: mass,

@@ -24,14 +24,14 @@ fn of_particles(moments: DVec3) -> Body {
     let arm = |moment: f64| (3.0 * (total - moment)).max(0.0).sqrt();
     let arms = [DVec3::X * arm(moments.x), DVec3::Y * arm(moments.y), DVec3::Z * arm(moments.z)];
     let places: Vec<_> = arms.into_iter().flat_map(|a| [a, -a]).collect();
-    Body::new(Shape::of_particles(&places).unwrap()).mass(1.0)
+    Body::new(Shape::from_particles(&places).unwrap()).mass(1.0)
 }
 
 /// A body of 1 kg with exactly these principal moments (kg·m²) about x, y, z.
 fn of_distribution(moments: DVec3) -> Body {
     let gyration = DMat3::from_diagonal(moments);
     let places = [DVec3::X, -DVec3::X];
-    let shape = Shape::of_distribution(&places, Mesh::default(), DVec3::ZERO, gyration).unwrap();
+    let shape = Shape::from_distribution(&places, Mesh::default(), DVec3::ZERO, gyration).unwrap();
     Body::new(shape).mass(1.0)
 }
 
@@ -274,7 +274,7 @@ proptest! {
     ) {
         let world = world(of_distribution(moments), axis * speed, drag);
         let mut state = world.state().clone();
-        let kinetic = |state: &State| tumble::Energy::of(world.model(), state).kinetic;
+        let kinetic = |state: &State| tumble::Energy::new(world.model(), state).kinetic;
         let start = kinetic(&state);
         for _ in 0..50 {
             let before = kinetic(&state);

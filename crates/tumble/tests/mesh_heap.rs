@@ -11,7 +11,7 @@ use tumble::{
 /// Eight knots thrown at each other in a narrow box.
 fn heap() -> World {
     let knot = Primitive::Knot { radius: 0.06, tube_radius: 0.022, segments: 12 }.mesh().unwrap();
-    let knot = Arc::new(Shape::of_mesh(&knot, Sampling::Vertices, MassModel::Solid).unwrap());
+    let knot = Arc::new(Shape::from_mesh(&knot, Sampling::Vertices, MassModel::Solid).unwrap());
     let material = Material {
         collision_stiffness: 4e3,
         damping: Damping::Restitution(0.4),
@@ -24,7 +24,7 @@ fn heap() -> World {
         orientation: DQuat::IDENTITY,
         open: [false; 6],
     };
-    let mut world = World::builder().dt(2e-4).material(material).walls_of_box(&arena);
+    let mut world = World::builder().dt(2e-4).material(material).box_walls(&arena);
     for number in 0..8 {
         let [x, y, z] = [number % 2, number / 2 % 2, number / 4].map(|i| f64::from(i) - 0.5);
         let place = DVec3::new(0.28 * x, 0.3 + 0.3 * y, 0.28 * z);
@@ -45,7 +45,7 @@ fn cached_patches_and_lists_do_not_change_any_bit() {
         cached.step().unwrap();
         // at times in every step, so that nothing is ever cached
         if step % 11 == 0 || step / 100 % 4 == 3 {
-            uncached.forget_scratch();
+            uncached.clear_scratch();
         }
         uncached.step().unwrap();
         touched += cached.state().pair_springs.len();

@@ -14,7 +14,7 @@ fn an_oscillation_is_added_to_the_uniform_motion() {
     let (frequency, phase) = (15.0, 0.4);
     let swing = Oscillation { amplitude, frequency, phase };
     let given = Prescribed { oscillation: Some(swing), ..Prescribed::default() };
-    let shape = Shape::of_particles(&[DVec3::ZERO, DVec3::X]).unwrap();
+    let shape = Shape::from_particles(&[DVec3::ZERO, DVec3::X]).unwrap();
     let drift = DVec3::new(0.5, 0.0, 0.0);
     let body = Body::new(shape).velocity(drift).motion(Motion::Prescribed(given));
     let mut world = World::builder().dt(1e-3).body(body).build().unwrap();
@@ -39,7 +39,7 @@ fn a_prescribed_body_ignores_walls_gravity_and_the_mouse_spring() {
             if tolerance.is_some() && integrator == Integrator::Euler {
                 continue;
             }
-            let shape = Shape::of_particles(&[DVec3::ZERO, DVec3::X, DVec3::Z]).unwrap();
+            let shape = Shape::from_particles(&[DVec3::ZERO, DVec3::X, DVec3::Z]).unwrap();
             let body = Body::new(shape).position(DVec3::Y * 0.1).velocity(DVec3::NEG_Y);
             let held = body.motion(Motion::Prescribed(Prescribed::default()));
             let mut world = World::builder()
@@ -70,7 +70,7 @@ fn a_prescribed_body_ignores_walls_gravity_and_the_mouse_spring() {
 fn impossible_prescribed_motions_are_refused() {
     let held = |places: &[DVec3], swing: Option<Oscillation>| {
         let given = Prescribed { oscillation: swing, ..Prescribed::default() };
-        let body = Body::new(Shape::of_particles(places).unwrap());
+        let body = Body::new(Shape::from_particles(places).unwrap());
         body.motion(Motion::Prescribed(given)).angular_velocity(DVec3::X * 3.0)
     };
     let refusal = |body: Body| {

@@ -11,7 +11,7 @@ use tumble::{
 fn world(integrator: Integrator, tolerance: Option<f64>) -> World {
     let size = DVec3::new(0.3, 0.2, 0.25);
     let mesh = Primitive::Box { size, divisions: 2 }.mesh().unwrap();
-    let shape = Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Particles).unwrap();
+    let shape = Shape::from_mesh(&mesh, Sampling::Vertices, MassModel::Particles).unwrap();
     let body = Body::new(shape)
         .position(DVec3::new(0.0, 0.3, 0.0))
         .orientation(DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9))
@@ -69,7 +69,7 @@ fn dropping_cached_data_before_every_step_does_not_change_any_bit() {
         let (mut kept, mut forgot) = (world(integrator, tolerance), world(integrator, tolerance));
         for _ in 0..3000 {
             kept.step().unwrap();
-            forgot.forget_scratch();
+            forgot.clear_scratch();
             forgot.step().unwrap();
         }
         assert_eq!(kept.state().hash(), forgot.state().hash());
@@ -111,7 +111,7 @@ fn springs_of_a_body_that_has_left_do_not_come_back() {
     // a particle that bounces with friction under `euler`, in the air from one step to the next
     let material =
         Material { collision_stiffness: 1e4, friction_stiffness: 0.5, ..Material::default() };
-    let body = Body::new(Shape::of_particles(&[DVec3::ZERO]).unwrap())
+    let body = Body::new(Shape::from_particles(&[DVec3::ZERO]).unwrap())
         .position(DVec3::Y * 0.3)
         .velocity(DVec3::new(2.0, -1.0, 0.0));
     let mut kept = World::builder()
@@ -124,7 +124,7 @@ fn springs_of_a_body_that_has_left_do_not_come_back() {
     let mut forgotten = kept.clone();
     for _ in 0..2000 {
         kept.step().unwrap();
-        forgotten.forget_scratch();
+        forgotten.clear_scratch();
         forgotten.step().unwrap();
         assert_eq!(kept.state(), forgotten.state());
         let in_the_air = kept.body(0).position().y > 0.1;
@@ -134,7 +134,7 @@ fn springs_of_a_body_that_has_left_do_not_come_back() {
 
 #[test]
 fn springs_between_bodies_that_cannot_be_are_refused() {
-    let clump = Shape::of_particles(&[DVec3::X * 0.05, DVec3::X * -0.05]).unwrap();
+    let clump = Shape::from_particles(&[DVec3::X * 0.05, DVec3::X * -0.05]).unwrap();
     let surface = Surface::Spheres { radius: 0.05 };
     let clump = Body::new(clump).mass(1.0).surface(surface);
     let material = Material { friction_stiffness: 0.5, ..Material::default() };

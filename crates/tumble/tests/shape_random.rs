@@ -89,7 +89,7 @@ proptest! {
         // built by hand, as `Mesh::new` would refuse triangles of missing vertices
         let vertices = vertices.into_iter().map(|v| v * scale).collect();
         let mesh = Mesh { vertices, triangles };
-        let _ = mesh.closedness().to_string();
+        let _ = mesh.watertightness().to_string();
         let _ = mesh.solid_integrals().map_err(|e| e.to_string());
         let _ = mesh.shell_integrals().map_err(|e| e.to_string());
         let _ = mesh.sample(Sampling::Surface { spacing }).map_err(|e| e.to_string());

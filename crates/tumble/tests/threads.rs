@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use tumble::{
-    Body, ContactDepths, DQuat, DVec3, Damping, Energy, Integrator, MassModel, Material,
+    Body, PenetrationDepths, DQuat, DVec3, Damping, Energy, Integrator, MassModel, Material,
     MaterialOverride, Motion, Oscillation, Prescribed, Primitive, Sampling, Shape, Surface,
     WallBox, WallPlane, World, WorldBuilder,
 };
@@ -30,12 +30,12 @@ impl Random {
 
 fn clump() -> Shape {
     let points = [DVec3::ZERO, DVec3::X, DVec3::new(0.4, 0.9, 0.0), DVec3::new(0.5, 0.3, 0.8)];
-    Shape::of_particles(&points.map(|point| point * 0.06)).unwrap()
+    Shape::from_particles(&points.map(|point| point * 0.06)).unwrap()
 }
 
 fn solid(primitive: Primitive) -> Arc<Shape> {
     let mesh = primitive.mesh().unwrap();
-    Arc::new(Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Solid).unwrap())
+    Arc::new(Shape::from_mesh(&mesh, Sampling::Vertices, MassModel::Solid).unwrap())
 }
 
 fn rough(random: &mut Random, body: Body, place: DVec3) -> Body {
@@ -74,7 +74,7 @@ fn heap(integrator: Integrator) -> WorldBuilder {
         .integrator(integrator)
         .velocity_damping_stiffness(0.001)
         .material(material)
-        .walls_of_box(&arena)
+        .box_walls(&arena)
         .body(base.motion(Motion::Prescribed(shaken)).name("slab"));
     for layer in 0..8 {
         for cell in 0..25 {
@@ -132,7 +132,7 @@ fn dropping_cached_data_at_random_does_not_change_any_bit() {
     for step in 0..2500 {
         cached.step().unwrap();
         if random.next().is_multiple_of(7) {
-            uncached.forget_scratch();
+            uncached.clear_scratch();
         }
         uncached.step().unwrap();
         if step % 100 == 99 {
@@ -173,7 +173,7 @@ fn on_ice(integrator: Integrator) -> World {
     let ice = MaterialOverride { friction_stiffness: Some(0.0), ..MaterialOverride::default() };
     let floor = WallPlane::new(DVec3::Y, 0.0).unwrap();
     let mut world = World::builder().dt(2e-4).integrator(integrator).material(material);
-    world = world.wall_of(floor, ice);
+    world = world.wall_with_material(floor, ice);
     for number in 0..100 {
         let cell =
             DVec3::new(f64::from(number % 5), f64::from(number / 25), f64::from(number / 5 % 5));
@@ -192,10 +192,10 @@ fn energy_and_depths_depend_on_the_state_only() {
             let mut world = on_ice(integrator);
             for _ in 0..30 {
                 advance(&mut world, 40);
-                assert_eq!(world.energy(), Energy::of(world.model(), world.state()));
-                assert_eq!(world.contact_depths(), ContactDepths::of(world.model(), world.state()));
+                assert_eq!(world.energy(), Energy::new(world.model(), world.state()));
+                assert_eq!(world.penetration_depths(), PenetrationDepths::new(world.model(), world.state()));
             }
-            let (springs, depths) = (&world.state().pair_springs, world.contact_depths());
+            let (springs, depths) = (&world.state().pair_springs, world.penetration_depths());
             assert!(!springs.is_empty() && depths.walls > 0.0, "{} {depths:?}", springs.len());
         });
     }

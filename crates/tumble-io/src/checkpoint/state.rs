@@ -34,7 +34,7 @@ pub(super) fn bytes(state: &State) -> Vec<u8> {
             orientation,
             orientation_rest,
             angular_momentum,
-            energy_owed,
+            energy_excess,
         } = body;
         put(&mut out, position.to_array());
         put(&mut out, velocity.to_array());
@@ -42,7 +42,7 @@ pub(super) fn bytes(state: &State) -> Vec<u8> {
             put(&mut out, [q.w, q.x, q.y, q.z]);
         }
         put(&mut out, angular_momentum.to_array());
-        put(&mut out, [*energy_owed]);
+        put(&mut out, [*energy_excess]);
     }
     for springs in springs {
         out.extend((springs.len() as u64).to_le_bytes());
@@ -97,7 +97,7 @@ fn body(from: &mut Bytes) -> Option<BodyState> {
         orientation: quaternion(from)?,
         orientation_rest: quaternion(from)?,
         angular_momentum: vector(from)?,
-        energy_owed: from.f64()?,
+        energy_excess: from.f64()?,
     })
 }
 

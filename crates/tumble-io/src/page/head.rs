@@ -33,7 +33,7 @@ pub struct Head {
     bodies: Vec<BodyHead>,
     walls: Vec<WallHead>,
     #[serde(rename = "box")]
-    walls_of_box: Option<BoxHead>,
+    box_walls: Option<BoxHead>,
     /// What can be changed while it runs; empty in a file.
     pub parameters: Vec<Parameter>,
     /// Frames in the page.
@@ -128,7 +128,7 @@ impl Head {
             shapes,
             bodies: bodies.collect(),
             walls: walls(world),
-            walls_of_box: scene.walls_of_box.as_ref().map(|own| of_box(&own.walls)),
+            box_walls: scene.box_walls.as_ref().map(|own| of_box(&own.walls)),
             parameters: Vec::new(),
             frame_count: 0,
             frames_recorded: 0,

@@ -20,7 +20,7 @@ pub(super) fn motion_picture(
 
 /// The walls of a scene.
 pub(crate) fn boundary(scene: &Scene) -> Vec<Boundary> {
-    let of_box = scene.walls_of_box.iter().map(|own| Boundary::Box {
+    let of_box = scene.box_walls.iter().map(|own| Boundary::Box {
         min: own.walls.min,
         max: own.walls.max,
         orientation: own.walls.orientation,

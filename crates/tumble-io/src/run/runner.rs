@@ -189,7 +189,7 @@ fn summarise(
     (steps_here, clock): (u64, Duration),
     energy: &EnergyRow,
 ) -> Summary {
-    let (steps, depths) = (world.state().step, world.contact_depths());
+    let (steps, depths) = (world.state().step, world.penetration_depths());
     let seconds = clock.as_secs_f64();
     Summary {
         version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -33,7 +33,7 @@ pub struct Scene {
     /// What is done about bodies that start in each other.
     pub overlaps: Overlaps,
     /// The box, if there is one.
-    pub walls_of_box: Option<BoxScene>,
+    pub box_walls: Option<BoxScene>,
     /// The single walls.
     pub walls: Vec<WallScene>,
     /// The bodies, before copies.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tumble::{MassModel, Mesh, Primitive, Sampling, Shape, ShapeError, Surface, ball_integrals};
+use tumble::{MassModel, Mesh, Primitive, Sampling, Shape, ShapeError, Surface, sphere_union_integrals};
 
 use super::description::{BodyScene, Geometry, MassScene};
 use super::reader::{Range, Reader};
@@ -56,7 +56,7 @@ pub fn shape_scene(reader: &Reader) -> Option<ShapeScene> {
     names.push("cat");
     let mut primitive = match reader.choice("shape", &names)? {
         "cat" => return Some(ShapeScene::Cat),
-        name => Primitive::named(name)?,
+        name => Primitive::from_name(name)?,
     };
     let length = |key, target: &mut f64| {
         *target = reader.number(key, Range::Positive).unwrap_or(*target);
@@ -145,9 +145,9 @@ pub fn make(body: &mut BodyScene, folder: &Path) -> Result<Made, GeometryError> 
     }
     let shape =
         if bare && body.sampling == Sampling::Vertices && body.mass_model == MassModel::Particles {
-            Shape::of_particles(&mesh.vertices)
+            Shape::from_particles(&mesh.vertices)
         } else {
-            Shape::of_mesh(&mesh, body.sampling, body.mass_model)
+            Shape::from_mesh(&mesh, body.sampling, body.mass_model)
         };
     let shape = shape.map_err(|error| blame(guilty_key(body, &error), error))?;
     let mass = mass(body, &mesh, &shape)?;
@@ -166,9 +166,9 @@ fn solid_balls(body: &BodyScene) -> Option<f64> {
 /// A body of solid balls about its particles; what several of them share weighs once.
 fn clump(body: &BodyScene, points: Mesh, radius: f64) -> Result<Made, GeometryError> {
     let places = &points.vertices;
-    let union = ball_integrals(places, radius).map_err(|error| blame("particle_radius", error))?;
+    let union = sphere_union_integrals(places, radius).map_err(|error| blame("particle_radius", error))?;
     let gyration = union.inertia() * (1.0 / union.measure);
-    let shape = Shape::of_distribution(places, Mesh::default(), union.centre, gyration);
+    let shape = Shape::from_distribution(places, Mesh::default(), union.centre, gyration);
     let shape = shape.map_err(|error| blame(guilty_key(body, &error), error))?;
     let mass = match body.mass {
         MassScene::Particle(mass) => mass * shape.moments().count,

@@ -151,7 +151,7 @@ fn world(
         .overlaps(scene.overlaps)
         .material(scene.collision);
     for (wall, material) in scene.all_walls() {
-        builder = builder.wall_of(wall, material);
+        builder = builder.wall_with_material(wall, material);
     }
     // bodies that look alike share one shape
     let mut made: BTreeMap<String, (Made, Geometry)> = BTreeMap::new();

@@ -37,7 +37,7 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
             keys.over(Material::default())
         }
     };
-    let walls_of_box = top.table("box").and_then(walls_of_box);
+    let box_walls = top.table("box").and_then(box_walls);
     let walls = top.tables("wall").into_iter().filter_map(wall).collect();
     let (bodies, sound) = bodies(&top, problems);
     let scene = Scene {
@@ -56,7 +56,7 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
             Some("push") => Overlaps::Push,
             _ => Overlaps::Refuse,
         },
-        walls_of_box,
+        box_walls,
         walls,
         bodies,
         output: top.table("output").map_or_else(OutputScene::default, output),
@@ -113,7 +113,7 @@ pub fn material(reader: &Reader) -> MaterialOverride {
     }
 }
 
-fn walls_of_box(reader: Reader) -> Option<BoxScene> {
+fn box_walls(reader: Reader) -> Option<BoxScene> {
     let (min, max) = (reader.vector("min"), reader.vector("max"));
     for key in ["min", "max"] {
         if !reader.has(key) {

@@ -42,7 +42,7 @@ impl Scene {
             }
             output
         });
-        if let Some(own) = &self.walls_of_box {
+        if let Some(own) = &self.box_walls {
             let mut table = Table::new();
             put(&mut table, "min", vector(own.walls.min));
             put(&mut table, "max", vector(own.walls.max));
@@ -67,7 +67,7 @@ impl Scene {
     /// Every wall with its own material: the box's faces first, then the single ones.
     pub fn all_walls(&self) -> Vec<(WallPlane, MaterialOverride)> {
         let of_box = self
-            .walls_of_box
+            .box_walls
             .iter()
             .flat_map(|own| own.walls.planes().into_iter().map(|plane| (plane, own.material)));
         of_box.chain(self.walls.iter().map(|wall| (wall.plane, wall.material))).collect()

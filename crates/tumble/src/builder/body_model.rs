@@ -77,7 +77,7 @@ impl WorldBuilder {
                 ("particle_mass", mass, mass * body.shape.particles().len() as f64)
             }
         };
-        let solid = shared.solids.get(name, &body.shape, body.surface)?;
+        let signed_distance = shared.solids.get(name, &body.shape, body.surface)?;
         let inertia = body.shape.gyration() * mass;
         let inverse_inertia = body.shape.principal().inverse() * (1.0 / mass);
         let fits = inertia.is_finite() && inverse_inertia.is_finite();
@@ -113,7 +113,7 @@ impl WorldBuilder {
             inertia,
             inverse_inertia,
             inverse_moments: DVec3::from_array(inverse_moments),
-            drag_modes: DragModes::of(&body.shape, mass).map(Box::new),
+            drag_modes: DragModes::new(&body.shape, mass).map(Box::new),
             pair_material: PairMaterial::new(
                 &body.material.over(self.material).at_area(area),
                 if is_free { 1.0 / mass } else { 0.0 },
@@ -124,7 +124,7 @@ impl WorldBuilder {
             is_damped: contacts.iter().any(ContactLaw::is_damped),
             contacts,
             surface: body.surface,
-            solid,
+            signed_distance,
             motion: body.motion,
         })
     }

@@ -125,7 +125,7 @@ pub(super) fn duplicate_names(model: &Model) -> Vec<BuildError> {
 /// Bodies that overlap initially, deeper than contact forces could press them.
 pub(super) fn overlaps(model: &Model, state: &State) -> Vec<BuildError> {
     let name = |index: u32| model.names[index as usize].clone();
-    let pairs = crate::stage::overlaps(model, state).into_iter();
+    let pairs = crate::contact::initial_overlap::overlaps(model, state).into_iter();
     pairs
         .map(|(first, second, depth)| BuildError::Overlap {
             first: name(first),

@@ -90,17 +90,17 @@ impl WorldBuilder {
 
     /// Adds a wall.
     pub fn wall(self, wall: WallPlane) -> Self {
-        self.wall_of(wall, MaterialOverride::default())
+        self.wall_with_material(wall, MaterialOverride::default())
     }
 
     /// Adds a wall with its own material.
-    pub fn wall_of(mut self, wall: WallPlane, material: MaterialOverride) -> Self {
+    pub fn wall_with_material(mut self, wall: WallPlane, material: MaterialOverride) -> Self {
         self.walls.push((wall, material));
         self
     }
 
     /// Adds the walls of a box.
-    pub fn walls_of_box(self, walls: &WallBox) -> Self {
+    pub fn box_walls(self, walls: &WallBox) -> Self {
         walls.planes().into_iter().fold(self, Self::wall)
     }
 

@@ -48,7 +48,7 @@ mod tests {
 
     #[test]
     fn bodies_that_differ_only_in_initial_state_and_name_share_a_model() {
-        let mesh = Primitive::named("tetrahedron").unwrap().mesh().unwrap();
+        let mesh = Primitive::from_name("tetrahedron").unwrap().mesh().unwrap();
         let shape = Arc::new(Shape::with_surface(&mesh.vertices, mesh.clone()).unwrap());
         let body = || Body::new(shape.clone()).mass(2.0);
         let stiff =

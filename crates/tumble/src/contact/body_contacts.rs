@@ -162,7 +162,7 @@ impl BodyContacts {
         }
     }
 
-    /// ContactDepths of the deepest contact between two bodies and of the deepest one between a sphere and a wall (m); 0 without contact.
+    /// PenetrationDepths of the deepest contact between two bodies and of the deepest one between a sphere and a wall (m); 0 without contact.
     pub fn max_depths(&mut self, model: &Model, state: &State) -> [f64; 2] {
         let mut depths = [0.0f64; 2];
         if model.has_body_contact {

@@ -1,6 +1,6 @@
 //! Why a mesh has no signed distance.
 
-use crate::Closedness;
+use crate::Watertightness;
 
 /// Why the signed distance to a mesh is not defined.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,11 +8,11 @@ pub enum SurfaceError {
     /// The mesh has no triangles, or only degenerate ones.
     NoTriangles,
     /// The triangles at some edges are wound inconsistently.
-    WronglyWound(Closedness),
+    WronglyWound(Watertightness),
     /// The holes are too large to distinguish inside and outside; see [`SignedDistance`](crate::SignedDistance).
     Open {
         /// The faulty edges.
-        closedness: Closedness,
+        closedness: Watertightness,
         /// The number of holes; holes that share a vertex count as one.
         holes: usize,
         /// Length of the longest boundary of a hole (m).

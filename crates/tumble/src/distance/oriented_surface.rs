@@ -162,7 +162,7 @@ fn check_edges(
             continue;
         }
         if edge.len() % 2 == 0 {
-            return Err(SurfaceError::WronglyWound(mesh.closedness()));
+            return Err(SurfaceError::WronglyWound(mesh.watertightness()));
         }
         let [a, b] = edge[0].ends.map(|i| mesh.vertices[i as usize]);
         boundary.push((edge[0].ends, a.distance(b)));
@@ -173,7 +173,7 @@ fn check_edges(
     let unit = faces.iter().map(|face| face.frame.area()).sum::<f64>().sqrt();
     if largest > HOLE * unit || total > HOLES * unit {
         return Err(SurfaceError::Open {
-            closedness: mesh.closedness(),
+            closedness: mesh.watertightness(),
             holes: holes.len(),
             largest,
             largest_allowed: HOLE * unit,

@@ -14,7 +14,7 @@ const NO_HINT: u32 = u32::MAX;
 
 /// The mesh of a built-in shape.
 fn primitive(name: &str) -> Mesh {
-    Primitive::named(name).unwrap().mesh().unwrap()
+    Primitive::from_name(name).unwrap().mesh().unwrap()
 }
 
 /// A mesh with transformed vertices.

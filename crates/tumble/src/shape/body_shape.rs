@@ -86,16 +86,16 @@ impl Shape {
     ///
     /// # Errors
     /// [`ShapeError`] if there are no particles, or a coordinate is not finite.
-    pub fn of_particles(places: &[DVec3]) -> Result<Self, ShapeError> {
+    pub fn from_particles(places: &[DVec3]) -> Result<Self, ShapeError> {
         Self::with_surface(places, Mesh::default())
     }
 
-    /// As [`Shape::of_particles`], with a surface mesh in the same frame.
+    /// As [`Shape::from_particles`], with a surface mesh in the same frame.
     ///
     /// # Errors
     /// [`ShapeError`] if there are no particles, or a coordinate is not finite.
     pub fn with_surface(places: &[DVec3], surface: Mesh) -> Result<Self, ShapeError> {
-        let mass = MassProperties::of_particles(places, 1.0 / places.len().max(1) as f64);
+        let mass = MassProperties::from_particles(places, 1.0 / places.len().max(1) as f64);
         Self::with_mass(places, surface, mass.centre, mass.inertia, true)
     }
 
@@ -103,7 +103,7 @@ impl Shape {
     ///
     /// # Errors
     /// [`ShapeError`] if the mesh does not suit the sampling or the mass model.
-    pub fn of_mesh(
+    pub fn from_mesh(
         mesh: &Mesh,
         sampling: Sampling,
         mass_model: MassModel,
@@ -124,7 +124,7 @@ impl Shape {
             MassModel::Solid => mesh.solid_integrals().map_err(ShapeError::Open)?,
         };
         let gyration = integrals.inertia() * (1.0 / integrals.measure);
-        Self::of_distribution(&places, mesh.clone(), integrals.centre, gyration)
+        Self::from_distribution(&places, mesh.clone(), integrals.centre, gyration)
     }
 
     /// A shape whose mass distribution is independent of its particles, such as a shell or a solid.
@@ -134,7 +134,7 @@ impl Shape {
     ///
     /// # Errors
     /// [`ShapeError`] if there are no particles, or a number is not finite.
-    pub fn of_distribution(
+    pub fn from_distribution(
         places: &[DVec3],
         surface: Mesh,
         centre: DVec3,
@@ -167,7 +167,7 @@ impl Shape {
             *vertex -= centre;
         }
         Ok(Self {
-            principal: PrincipalAxes::of(gyration, rounding * rounding),
+            principal: PrincipalAxes::new(gyration, rounding * rounding),
             moments: ParticleMoments::new(&particles, carry_mass),
             radius: particles.iter().fold(0.0, |m: f64, r| m.max(r.length())),
             particles,
@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn coincident_particles_have_no_inertia_anywhere() {
         let places = [DVec3::new(0.1, 0.2, 0.3); 7];
-        let shape = Shape::of_particles(&places).unwrap();
+        let shape = Shape::from_particles(&places).unwrap();
         assert_eq!(shape.principal().rotation_count(), 0);
         assert_eq!(shape.principal().inverse(), DMat3::ZERO);
     }
@@ -231,7 +231,7 @@ mod tests {
     fn particles_in_a_plane_have_inertia_about_all_axes() {
         let places: Vec<_> =
             (0..9).map(|i| DVec3::new(f64::from(i % 3), f64::from(i / 3), 1.0)).collect();
-        let shape = Shape::of_particles(&places).unwrap();
+        let shape = Shape::from_particles(&places).unwrap();
         assert_eq!(shape.principal().rotation_count(), 3);
         let m = shape.principal().moments;
         assert!((m.x + m.y - m.z).abs() < 1e-15, "perpendicular axis theorem");
@@ -241,10 +241,10 @@ mod tests {
     fn bodies_of_any_size_have_inertia_about_all_axes() {
         for scale in [1e-100, 1e-6, 1.0, 1e6, 1e100] {
             let places = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ZERO].map(|p| p * scale);
-            let shape = Shape::of_particles(&places).unwrap();
+            let shape = Shape::from_particles(&places).unwrap();
             assert_eq!(shape.principal().rotation_count(), 3, "scale {scale}");
         }
         let huge = [DVec3::X * 1e200, DVec3::ZERO];
-        assert_eq!(Shape::of_particles(&huge), Err(ShapeError::TooLarge));
+        assert_eq!(Shape::from_particles(&huge), Err(ShapeError::TooLarge));
     }
 }

@@ -17,7 +17,7 @@
 use glam::{DMat3, DVec3};
 
 use super::mesh::Mesh;
-use super::watertight::Closedness;
+use super::watertight::Watertightness;
 
 /// Triangles per partial sum; partial sums reduce rounding on large meshes.
 const CHUNK: usize = 1024;
@@ -54,7 +54,7 @@ pub enum OpenMesh {
     /// The mesh has no triangles, or only degenerate ones.
     NoTriangles,
     /// Some edges are open or wrongly wound.
-    Edges(Closedness),
+    Edges(Watertightness),
     /// The mesh is closed but flat: the enclosed volume is zero up to rounding.
     NoVolume,
     /// The mesh is smaller than 1e-60 m or larger than 1e60 m, beyond the range of doubles.
@@ -211,7 +211,7 @@ impl Mesh {
     /// beyond the range of doubles.
     pub fn solid_integrals(&self) -> Result<Integrals, OpenMesh> {
         let bounds = self.bounds().ok_or(OpenMesh::NoTriangles)?;
-        let closedness = self.closedness();
+        let closedness = self.watertightness();
         if closedness.triangles == 0 {
             return Err(OpenMesh::NoTriangles);
         }

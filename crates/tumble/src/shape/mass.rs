@@ -18,7 +18,7 @@ impl MassProperties {
     ///
     /// The particles have equal masses `particle_mass` (kg) at `positions` (m). Without particles all
     /// results are zero.
-    pub fn of_particles(positions: &[DVec3], particle_mass: f64) -> Self {
+    pub fn from_particles(positions: &[DVec3], particle_mass: f64) -> Self {
         let count = positions.len().max(1) as f64;
         // an estimate of the centre and its correction keep the sums accurate far from the origin
         let estimate = positions.iter().copied().sum::<DVec3>() / count;
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn two_particles_have_the_inertia_of_a_dumbbell() {
         let points = [DVec3::new(11.0, 5.0, 5.0), DVec3::new(9.0, 5.0, 5.0)];
-        let mass = MassProperties::of_particles(&points, 3.0);
+        let mass = MassProperties::from_particles(&points, 3.0);
         assert_eq!(mass.mass, 6.0);
         assert_eq!(mass.centre, DVec3::new(10.0, 5.0, 5.0));
         assert_eq!(mass.inertia, DMat3::from_diagonal(DVec3::new(0.0, 6.0, 6.0)));
@@ -158,8 +158,8 @@ mod tests {
     #[test]
     fn particles_on_a_line_have_no_inertia_about_it() {
         let points: Vec<_> = (0..7).map(|i| DVec3::splat(0.1 * f64::from(i) + 3.0)).collect();
-        let mass = MassProperties::of_particles(&points, 1.0);
-        let axes = PrincipalAxes::of(mass.inertia, 0.0);
+        let mass = MassProperties::from_particles(&points, 1.0);
+        let axes = PrincipalAxes::new(mass.inertia, 0.0);
         assert_eq!(axes.rotation_count(), 2);
         let spin = axes.inverse() * DVec3::splat(1.0);
         assert!(spin.length() < 1e-12, "{spin}");
@@ -172,8 +172,8 @@ mod tests {
                 .map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) + at)
                 .collect()
         };
-        let near = MassProperties::of_particles(&corners(0.0), 1.0).inertia;
-        let far = MassProperties::of_particles(&corners(1e6), 1.0).inertia;
+        let near = MassProperties::from_particles(&corners(0.0), 1.0).inertia;
+        let far = MassProperties::from_particles(&corners(1e6), 1.0).inertia;
         assert!(close(near, far, 1e-9));
     }
 
@@ -185,8 +185,8 @@ mod tests {
         ) {
             let scale = 10f64.powi(scale);
             let points: Vec<_> = points.into_iter().map(|p| DVec3::from_array(p) * scale).collect();
-            let inertia = MassProperties::of_particles(&points, 1.0).inertia;
-            let axes = PrincipalAxes::of(inertia, 0.0);
+            let inertia = MassProperties::from_particles(&points, 1.0).inertia;
+            let axes = PrincipalAxes::new(inertia, 0.0);
             let rebuilt = axes.axes * DMat3::from_diagonal(axes.moments) * axes.axes.transpose();
             let bound = 1e-12 * axes.moments.z;
             prop_assert!(close(rebuilt, inertia, bound.max(f64::MIN_POSITIVE)));

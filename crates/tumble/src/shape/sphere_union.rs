@@ -37,7 +37,7 @@ const GAUSS: [(f64, f64); 4] = [
 
 /// Why the integrals of a union of spheres cannot be computed.
 #[derive(Clone, Debug, PartialEq)]
-pub enum BallsError {
+pub enum SphereUnionError {
     /// The radius is below 1e-60 m, above 1e60 m, or NaN.
     Radius {
         /// The radius (m).
@@ -50,7 +50,7 @@ pub enum BallsError {
     },
 }
 
-impl std::fmt::Display for BallsError {
+impl std::fmt::Display for SphereUnionError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Radius { radius } => {
@@ -69,7 +69,7 @@ impl std::fmt::Display for BallsError {
     }
 }
 
-impl std::error::Error for BallsError {}
+impl std::error::Error for SphereUnionError {}
 
 /// Volume (m³), centre (m) and second moment (m⁵) of a union of spheres of equal `radius` (m).
 ///
@@ -77,10 +77,10 @@ impl std::error::Error for BallsError {}
 /// where no spheres overlap, else accurate to a relative 1e-4 or better.
 ///
 /// # Errors
-/// [`BallsError`] if the radius is out of range, or there are too many overlaps.
-pub fn ball_integrals(centres: &[DVec3], radius: f64) -> Result<Integrals, BallsError> {
+/// [`SphereUnionError`] if the radius is out of range, or there are too many overlaps.
+pub fn sphere_union_integrals(centres: &[DVec3], radius: f64) -> Result<Integrals, SphereUnionError> {
     if !SIZES.contains(&radius) {
-        return Err(BallsError::Radius { radius });
+        return Err(SphereUnionError::Radius { radius });
     }
     // in units of the radius and relative to the mean, so that a clump far from the origin loses no digits
     let origin = centres.iter().map(|&c| c / centres.len().max(1) as f64).sum::<DVec3>();
@@ -91,7 +91,7 @@ pub fn ball_integrals(centres: &[DVec3], radius: f64) -> Result<Integrals, Balls
     let cells = Cells::new(&places);
     let mut caps = Vec::new();
     if cells.count_overlaps(&mut caps) > MAX_OVERLAPS {
-        return Err(BallsError::TooManyOverlaps { balls: centres.len() });
+        return Err(SphereUnionError::TooManyOverlaps { balls: centres.len() });
     }
     let mut sum = Moments::ZERO;
     for &place in &places {

@@ -20,7 +20,7 @@ fn cap_integrals(h: f64) -> (f64, f64, f64) {
 #[test]
 fn spheres_that_do_not_overlap_are_exact() {
     let centres = [DVec3::ZERO, DVec3::new(0.4, 0.0, 0.0), DVec3::new(0.0, 1.0, 0.0)];
-    let found = ball_integrals(&centres, 0.2).unwrap();
+    let found = sphere_union_integrals(&centres, 0.2).unwrap();
     let one = UNIT_VOLUME * 0.008;
     assert!((found.measure / (3.0 * one) - 1.0).abs() < 1e-15);
     let centre = DVec3::new(0.4, 1.0, 0.0) / 3.0;
@@ -37,7 +37,7 @@ fn two_overlapping_spheres_lack_the_volume_of_their_lens() {
     for distance in [0.01, 0.3, 1.0, 1.7, 1.99] {
         for axis in [DVec3::X, DVec3::new(1.0, 1.0, 0.0), DVec3::new(0.3, -0.5, 0.8)] {
             let axis = axis.normalize();
-            let found = ball_integrals(&[DVec3::ZERO, distance * axis], 1.0).unwrap();
+            let found = sphere_union_integrals(&[DVec3::ZERO, distance * axis], 1.0).unwrap();
             // the volume of the lens: π (4 + d) (2 − d)² / 12
             let volume =
                 2.0 * UNIT_VOLUME - PI * (4.0 + distance) * (2.0 - distance).powi(2) / 12.0;
@@ -61,7 +61,7 @@ fn a_clump_of_spheres_at_the_corners_of_a_cube_lacks_twelve_lenses() {
         .map(|i| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 0.3)
         .collect();
     let (radius, distance) = (0.2, 1.5);
-    let found = ball_integrals(&corners, radius).unwrap();
+    let found = sphere_union_integrals(&corners, radius).unwrap();
     let lens = PI * (4.0 + distance) * (2.0f64 - distance).powi(2) / 12.0;
     let volume = (8.0 * UNIT_VOLUME - 12.0 * lens) * radius.powi(3);
     assert!((found.measure / volume - 1.0).abs() < 1e-6, "{}", found.measure / volume - 1.0);
@@ -74,21 +74,21 @@ fn a_clump_of_spheres_at_the_corners_of_a_cube_lacks_twelve_lenses() {
 
 #[test]
 fn coincident_and_nearly_coincident_spheres_count_once() {
-    let one = ball_integrals(&[DVec3::X], 2.0).unwrap();
-    assert_eq!(ball_integrals(&[DVec3::X; 5], 2.0).unwrap(), one);
+    let one = sphere_union_integrals(&[DVec3::X], 2.0).unwrap();
+    assert_eq!(sphere_union_integrals(&[DVec3::X; 5], 2.0).unwrap(), one);
     assert!((one.measure / (8.0 * UNIT_VOLUME) - 1.0).abs() < 1e-15);
     // spheres within 1e-8 of each other add almost nothing
     let ring: Vec<DVec3> = (0..12)
         .map(|i| 1e-9 * DVec3::new(f64::from(i), f64::from(i % 5), f64::from(i % 3)))
         .collect();
-    let close = ball_integrals(&ring, 2.0).unwrap();
+    let close = sphere_union_integrals(&ring, 2.0).unwrap();
     assert!((close.measure / one.measure - 1.0).abs() < 1e-5);
 }
 
 #[test]
 fn each_sphere_of_a_row_shares_a_lens_with_the_next() {
     let row: Vec<DVec3> = (0..21).map(|i| DVec3::new(1e3, 0.0, 0.5 * f64::from(i))).collect();
-    let found = ball_integrals(&row, 1.0).unwrap();
+    let found = sphere_union_integrals(&row, 1.0).unwrap();
     let lens = PI * 4.5 * 1.5f64.powi(2) / 12.0;
     let volume = 21.0 * UNIT_VOLUME - 20.0 * lens;
     assert!((found.measure / volume - 1.0).abs() < 1e-8, "{}", found.measure / volume - 1.0);
@@ -98,15 +98,15 @@ fn each_sphere_of_a_row_shares_a_lens_with_the_next() {
 #[test]
 fn too_many_overlaps_and_radii_out_of_range_are_refused() {
     let many: Vec<DVec3> = (0..2000).map(|i| DVec3::X * 1e-4 * f64::from(i)).collect();
-    let error = ball_integrals(&many, 1.0).unwrap_err();
-    assert_eq!(error, BallsError::TooManyOverlaps { balls: 2000 });
+    let error = sphere_union_integrals(&many, 1.0).unwrap_err();
+    assert_eq!(error, SphereUnionError::TooManyOverlaps { balls: 2000 });
     assert!(error.to_string().contains("overlap more than 25000 times"), "{error}");
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-70, 1e70] {
-        assert!(matches!(ball_integrals(&many, radius), Err(BallsError::Radius { .. })));
+        assert!(matches!(sphere_union_integrals(&many, radius), Err(SphereUnionError::Radius { .. })));
     }
     // so far apart that doubles do not resolve a sphere
     let far = [DVec3::ZERO, DVec3::X * 1e30, DVec3::X * -1e30, DVec3::new(1e30, 1.0, 0.0)];
-    let found = ball_integrals(&far, 1.0).unwrap();
+    let found = sphere_union_integrals(&far, 1.0).unwrap();
     assert!(found.second_moment.is_finite());
 }
 
@@ -115,7 +115,7 @@ fn dense_rows_and_blocks_are_accurate_without_rim_crossings() {
     // twenty neighbours each, along an axis other than z
     let axis = DVec3::new(0.6, 0.48, 0.64);
     let row: Vec<DVec3> = (0..60).map(|i| axis * 0.19 * f64::from(i)).collect();
-    let found = ball_integrals(&row, 1.0).unwrap();
+    let found = sphere_union_integrals(&row, 1.0).unwrap();
     let lens = PI * 4.19 * 1.81f64.powi(2) / 12.0;
     let volume = 60.0 * UNIT_VOLUME - 59.0 * lens;
     assert!((found.measure / volume - 1.0).abs() < 1e-4, "{}", found.measure / volume - 1.0);
@@ -123,7 +123,7 @@ fn dense_rows_and_blocks_are_accurate_without_rim_crossings() {
     let block = |turn: glam::DQuat, shift: DVec3| {
         let place = |i: i32| DVec3::new(f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9));
         let places: Vec<DVec3> = (0..27).map(|i| turn * (place(i) * 0.8) + shift).collect();
-        ball_integrals(&places, 1.0).unwrap()
+        sphere_union_integrals(&places, 1.0).unwrap()
     };
     let here = block(glam::DQuat::IDENTITY, DVec3::ZERO);
     let there = block(glam::DQuat::from_xyzw(0.1, 0.5, -0.3, 0.8).normalize(), DVec3::X * 50.0);

@@ -164,7 +164,7 @@ mod tests {
     fn the_mean_weight_is_one() {
         let size = DVec3::new(0.3, 0.2, 0.1);
         let mesh = Primitive::Box { size, divisions: 4 }.mesh().unwrap();
-        let shape = Shape::of_mesh(&mesh, Sampling::Vertices, MassModel::Solid).unwrap();
+        let shape = Shape::from_mesh(&mesh, Sampling::Vertices, MassModel::Solid).unwrap();
         assert_eq!((shape.particles().weight(0), shape.mean_area()), (1.0, None));
         let weighted = shape.with_area_weights().unwrap();
         let particles = weighted.particles();
@@ -184,7 +184,7 @@ mod tests {
     fn particles_of_a_sampled_surface_keep_unit_weights() {
         let mesh = Primitive::Sphere { radius: 0.1, subdivisions: 3 }.mesh().unwrap();
         let sampling = Sampling::Surface { spacing: 0.03 };
-        let shape = Shape::of_mesh(&mesh, sampling, MassModel::Particles).unwrap();
+        let shape = Shape::from_mesh(&mesh, sampling, MassModel::Particles).unwrap();
         let shared = shape.with_area_weights().unwrap();
         assert_eq!(shared.particles(), shape.particles());
         assert!(!shared.particles().is_weighted() && shared.mean_area().unwrap() > 0.0);
@@ -194,10 +194,10 @@ mod tests {
     fn particles_without_a_surface_have_no_area() {
         let mesh = Primitive::Sphere { radius: 0.1, subdivisions: 3 }.mesh().unwrap();
         let filled = Sampling::Volume { spacing: 0.03 };
-        let of = |mesh: &Mesh, sampling| Shape::of_mesh(mesh, sampling, MassModel::Particles);
+        let of = |mesh: &Mesh, sampling| Shape::from_mesh(mesh, sampling, MassModel::Particles);
         let filled = of(&mesh, filled).unwrap();
         assert_eq!(filled.with_area_weights(), Err(AreaError::Volume));
-        let bare = Shape::of_particles(&mesh.vertices).unwrap();
+        let bare = Shape::from_particles(&mesh.vertices).unwrap();
         assert_eq!(bare.with_area_weights(), Err(AreaError::Bare));
         let points = Mesh { triangles: Vec::new(), ..mesh };
         let error = of(&points, Sampling::Vertices).unwrap().with_area_weights().unwrap_err();

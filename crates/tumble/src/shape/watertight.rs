@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::mesh::Mesh;
 
-/// The maximum length of [`Closedness::first`].
+/// The maximum length of [`Watertightness::first`].
 const MAX_LISTED: usize = 5;
 
 /// What is wrong with an edge.
@@ -32,7 +32,7 @@ pub struct FaultyEdge {
 /// Coincident vertices count as one, and triangles with two coincident corners are ignored. Texture seams
 /// and degenerate triangles therefore do not make a mesh open.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Closedness {
+pub struct Watertightness {
     /// The number of triangles that count.
     pub triangles: usize,
     /// The number of ignored triangles: two corners coincide, or a corner is missing or not finite.
@@ -48,7 +48,7 @@ pub struct Closedness {
     pub first: Vec<FaultyEdge>,
 }
 
-impl Closedness {
+impl Watertightness {
     /// Whether the mesh is watertight: it has triangles, and each edge has as many half-edges in one
     /// direction as in the other.
     pub fn is_closed(&self) -> bool {
@@ -61,7 +61,7 @@ impl Closedness {
     }
 }
 
-impl std::fmt::Display for Closedness {
+impl std::fmt::Display for Watertightness {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if self.triangles == 0 {
             return write!(f, "the mesh has no triangles");
@@ -177,7 +177,7 @@ impl Mesh {
     ///
     /// Triangles that [`Mesh::new`] would refuse are ignored. There is no tolerance: vertices coincide if
     /// their coordinates are equal.
-    pub fn closedness(&self) -> Closedness {
+    pub fn watertightness(&self) -> Watertightness {
         let welded = weld(&self.vertices);
         let triangles: Vec<[u32; 3]> = self
             .triangles
@@ -187,10 +187,10 @@ impl Mesh {
             .filter(|[a, b, c]| a != b && b != c && c != a)
             .collect();
 
-        let mut found = Closedness {
+        let mut found = Watertightness {
             triangles: triangles.len(),
             ignored_triangles: self.triangles.len() - triangles.len(),
-            ..Closedness::default()
+            ..Watertightness::default()
         };
         HalfEdges::new(&triangles, welded.len()).each_edge(|lower, upper, up, down| {
             found.non_manifold += usize::from(up + down > 2);
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_tetrahedron_is_a_closed_manifold() {
-        let found = tetrahedron().closedness();
+        let found = tetrahedron().watertightness();
         assert!(found.is_manifold());
         assert_eq!(found.triangles, 4);
         assert_eq!(found.to_string(), "the mesh is closed");
@@ -235,7 +235,7 @@ mod tests {
     fn a_missing_triangle_leaves_three_open_edges() {
         let mut mesh = tetrahedron();
         mesh.triangles.pop();
-        let found = mesh.closedness();
+        let found = mesh.watertightness();
         assert_eq!((found.open_edges, found.wrongly_wound), (3, 0));
         let named: Vec<_> = found.first.iter().map(|e| (e.vertices, e.fault)).collect();
         let open = |a, b| ([a, b], EdgeFault::Open);
@@ -252,7 +252,7 @@ mod tests {
     fn a_flipped_triangle_has_three_wrongly_wound_edges() {
         let mut mesh = tetrahedron();
         mesh.triangles[2].swap(0, 1);
-        let found = mesh.closedness();
+        let found = mesh.watertightness();
         assert_eq!((found.open_edges, found.wrongly_wound), (0, 3));
         assert!(found.to_string().contains("wrongly wound from vertex 1 (1, 0, 0)"), "{found}");
     }
@@ -269,7 +269,7 @@ mod tests {
         // −0 equals 0
         soup.vertices[0].x = -0.0;
         soup.triangles.push([0, 0, 1]);
-        let found = soup.closedness();
+        let found = soup.watertightness();
         assert!(found.is_manifold(), "{found}");
         assert_eq!((found.triangles, found.ignored_triangles), (4, 1));
     }
@@ -283,7 +283,7 @@ mod tests {
         for t in mesh.triangles.clone() {
             mesh.triangles.push([t[0] + 4, t[2] + 4, t[1] + 4]);
         }
-        let found = mesh.closedness();
+        let found = mesh.watertightness();
         assert!(found.is_closed() && !found.is_manifold());
         assert_eq!(found.non_manifold, 1);
     }
@@ -292,7 +292,7 @@ mod tests {
     fn all_faulty_edges_are_counted_and_the_first_few_listed() {
         let vertices = (0..30).map(|i| DVec3::new(i as f64, (i * i) as f64, 1.0)).collect();
         let triangles = (0..10).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let found = Mesh::new(vertices, triangles).unwrap().closedness();
+        let found = Mesh::new(vertices, triangles).unwrap().watertightness();
         assert_eq!((found.open_edges, found.first.len()), (30, MAX_LISTED));
         assert!(found.to_string().ends_with(", …"));
     }
@@ -300,9 +300,9 @@ mod tests {
     #[test]
     fn invalid_meshes_do_not_panic() {
         let mesh = Mesh { vertices: vec![DVec3::NAN; 3], triangles: vec![[0, 1, 2], [7, 8, 9]] };
-        let found = mesh.closedness();
+        let found = mesh.watertightness();
         assert_eq!((found.triangles, found.ignored_triangles), (0, 2));
         assert!(!found.is_closed());
-        assert!(!Mesh::default().closedness().is_closed());
+        assert!(!Mesh::default().watertightness().is_closed());
     }
 }

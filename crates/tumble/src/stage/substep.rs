@@ -115,9 +115,9 @@ impl BodyStepper<'_> {
                 continue;
             }
             totals += RunTotals { evaluations: 0, ..part };
-            self.state.energy_owed += error;
-            if self.add_kinetic_energy(-self.state.energy_owed) {
-                self.state.energy_owed = 0.0;
+            self.state.energy_excess += error;
+            if self.add_kinetic_energy(-self.state.energy_excess) {
+                self.state.energy_excess = 0.0;
             }
             // the correction changes velocities only
             start = MechanicalEnergy { kinetic: self.kinetic_energy(), ..end };

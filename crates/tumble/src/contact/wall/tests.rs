@@ -22,12 +22,12 @@ fn in_a_corner(friction: f64) -> World {
         friction_stiffness: friction,
         ..Material::default()
     };
-    let body = Body::new(Shape::of_particles(&places).unwrap())
+    let body = Body::new(Shape::from_particles(&places).unwrap())
         .position(DVec3::splat(-0.75))
         .orientation(DQuat::from_rotation_y(0.4))
         .velocity(DVec3::new(-1.0, -2.0, 0.5))
         .angular_velocity(DVec3::new(3.0, 1.0, -2.0));
-    World::builder().material(material).walls_of_box(&WallBox::arena()).body(body).build().unwrap()
+    World::builder().material(material).box_walls(&WallBox::arena()).body(body).build().unwrap()
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn weighted_or_repeated(as_weights: bool, friction: f64, damping: f64) -> WorldB
     let (centre, gyration) =
         (DVec3::new(0.01, 0.0, -0.02), glam::DMat3::from_diagonal(DVec3::new(0.03, 0.04, 0.05)));
     let shape = |places: &[DVec3]| {
-        Shape::of_distribution(places, Mesh::default(), centre, gyration).unwrap()
+        Shape::from_distribution(places, Mesh::default(), centre, gyration).unwrap()
     };
     let total: usize = (0..places.len()).map(copies).sum();
     // copies of a mean particle
@@ -95,7 +95,7 @@ fn weighted_or_repeated(as_weights: bool, friction: f64, damping: f64) -> WorldB
         .position(DVec3::splat(-0.68))
         .velocity(DVec3::new(-1.0, -2.0, 0.5))
         .angular_velocity(DVec3::new(3.0, 1.0, -2.0));
-    World::builder().material(material).walls_of_box(&WallBox::arena()).body(body)
+    World::builder().material(material).box_walls(&WallBox::arena()).body(body)
 }
 
 #[test]

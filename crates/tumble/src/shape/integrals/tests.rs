@@ -150,7 +150,7 @@ fn meshes_without_volume_or_area_are_refused() {
 
 #[test]
 fn moments_scale_with_powers_of_the_size() {
-    let mesh = Primitive::named("t-handle").unwrap().mesh().unwrap();
+    let mesh = Primitive::from_name("t-handle").unwrap().mesh().unwrap();
     let one = mesh.solid_integrals().unwrap();
     for scale in [1e-9, 1e-6, 1e6, 1e12] {
         let mut scaled = mesh.clone();

@@ -5,7 +5,7 @@ use glam::DVec3;
 /// A built-in shape.
 ///
 /// Each mesh is closed, wound counter-clockwise seen from outside, and has no duplicate vertices. The centre of
-/// mass of its solid is at the origin, up to rounding. [`Primitive::named`] gives the defaults, about 0.3 m large.
+/// mass of its solid is at the origin, up to rounding. [`Primitive::from_name`] gives the defaults, about 0.3 m large.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Primitive {
     /// A geodesic sphere: an icosahedron whose edges are halved `subdivisions` times.
@@ -106,7 +106,7 @@ pub enum Primitive {
 }
 
 impl Primitive {
-    /// The names of all shapes, as used in scene files and by [`Primitive::named`].
+    /// The names of all shapes, as used in scene files and by [`Primitive::from_name`].
     pub const NAMES: [&str; 10] = [
         "sphere",
         "box",
@@ -124,12 +124,12 @@ impl Primitive {
     ///
     /// ```
     /// use tumble::Primitive;
-    /// let sphere = Primitive::named("sphere").unwrap();
+    /// let sphere = Primitive::from_name("sphere").unwrap();
     /// assert_eq!(sphere, Primitive::Sphere { radius: 0.15, subdivisions: 3 });
     /// assert_eq!(sphere.mesh()?.vertices.len(), 642);
     /// # Ok::<(), tumble::PrimitiveError>(())
     /// ```
-    pub fn named(name: &str) -> Option<Self> {
+    pub fn from_name(name: &str) -> Option<Self> {
         Some(match name {
             "sphere" => Self::Sphere { radius: 0.15, subdivisions: 3 },
             "box" => Self::Box { size: DVec3::new(0.3, 0.2, 0.1), divisions: 1 },

@@ -11,7 +11,7 @@ fn mesh(shape: Primitive) -> Mesh {
 }
 
 fn defaults() -> impl Iterator<Item = Primitive> {
-    Primitive::NAMES.into_iter().map(|name| Primitive::named(name).unwrap())
+    Primitive::NAMES.into_iter().map(|name| Primitive::from_name(name).unwrap())
 }
 
 /// A copy with resolution `n`.
@@ -35,9 +35,9 @@ fn at(shape: Primitive, n: u32) -> Primitive {
 #[test]
 fn every_name_gives_the_shape_of_that_name() {
     for name in Primitive::NAMES {
-        assert_eq!(Primitive::named(name).map(|s| s.name()), Some(name));
+        assert_eq!(Primitive::from_name(name).map(|s| s.name()), Some(name));
     }
-    assert_eq!(Primitive::named("teapot"), None);
+    assert_eq!(Primitive::from_name("teapot"), None);
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn all_meshes_are_closed_manifolds_wound_outwards_at_every_resolution() {
         for n in [3, 4, 5, 6, 7, 13, 40] {
             let n = if matches!(shape, Primitive::Sphere { .. }) { n / 4 % 7 } else { n };
             let mesh = mesh(at(shape, n));
-            let found = mesh.closedness();
+            let found = mesh.watertightness();
             assert!(found.is_manifold(), "{} at {n}: {found}", shape.name());
             assert_eq!(found.ignored_triangles, 0);
             // Euler: V − E + F = 2 − 2 genus, with E = 3F/2; it fails if there are duplicate vertices
@@ -117,7 +117,7 @@ fn the_principal_axes_of_the_defaults_are_the_coordinate_axes() {
 
 #[test]
 fn the_t_handle_has_three_distinct_principal_moments() {
-    let i = mesh(Primitive::named("t-handle").unwrap()).solid_integrals().unwrap().inertia();
+    let i = mesh(Primitive::from_name("t-handle").unwrap()).solid_integrals().unwrap().inertia();
     let (x, y, z) = (i.x_axis.x, i.y_axis.y, i.z_axis.z);
     assert!(y > 1.3 * x && z > 1.3 * y, "{x} {y} {z}");
 }
@@ -281,7 +281,7 @@ fn shapes_of_extreme_proportions_are_closed() {
         Primitive::Knot { radius: 1.0, tube_radius: 0.409, segments: 3 },
     ];
     for shape in shapes {
-        let found = mesh(shape).closedness();
+        let found = mesh(shape).watertightness();
         assert!(found.is_manifold() && found.ignored_triangles == 0, "{shape:?}: {found}");
     }
 }

@@ -3,7 +3,7 @@ use crate::shape::Primitive;
 use glam::DQuat;
 
 fn named(name: &str) -> Mesh {
-    Primitive::named(name).unwrap().mesh().unwrap()
+    Primitive::from_name(name).unwrap().mesh().unwrap()
 }
 
 fn on_surface(mesh: &Mesh, spacing: f64) -> Vec<DVec3> {
