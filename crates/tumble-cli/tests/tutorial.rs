@@ -7,7 +7,7 @@ mod common;
 use std::path::Path;
 use std::process::Command;
 
-use common::Desk;
+use common::TestDir;
 
 /// A fenced block: what follows the fence, and its lines.
 struct Block<'a> {
@@ -20,20 +20,20 @@ fn the_commands_of_the_tutorial_print_what_it_says() {
     let tutorial = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/tutorial.md");
     let tutorial = std::fs::read_to_string(tutorial).expect("docs/tutorial.md");
     let blocks = blocks(&tutorial);
-    let desk = Desk::new();
+    let dir = TestDir::new();
     let mut commands = 0;
     for (i, block) in blocks.iter().enumerate() {
         match block.label {
             "toml" => {
                 let name = block.text.lines().next().and_then(|line| line.strip_prefix("# "));
-                desk.write(name.expect("a first line `# FILE`"), &block.text);
+                dir.write(name.expect("a first line `# FILE`"), &block.text);
             }
             // runs until Ctrl-C; tests/view.rs tests it
             "sh" if block.text.starts_with("tumble view") => {}
             "sh" => {
                 let quoted = blocks.get(i + 1).filter(|next| next.label == "text");
                 let quoted = quoted.map_or("", |next| &next.text);
-                run(&desk, &block.text, quoted);
+                run(&dir, &block.text, quoted);
                 commands += block.text.matches("tumble ").count();
             }
             _ => {}
@@ -41,19 +41,19 @@ fn the_commands_of_the_tutorial_print_what_it_says() {
     }
     assert!(commands >= 12, "only {commands} commands of the tutorial were found");
     for file in ["first/motion.html", "die.gif", "hit.png", "die.glb", "dominoes/summary.json"] {
-        assert!(desk.path(file).exists(), "the tutorial did not write {file}");
+        assert!(dir.path(file).exists(), "the tutorial did not write {file}");
     }
 }
 
 /// Runs a block of commands and compares what it prints with what the tutorial quotes.
-fn run(desk: &Desk, script: &str, quoted: &str) {
+fn run(dir: &TestDir, script: &str, quoted: &str) {
     let binary = Path::new(env!("CARGO_BIN_EXE_tumble"));
     let folder = binary.parent().expect("the program is in a folder").display();
     let path = format!("{folder}:{}", std::env::var("PATH").unwrap_or_default());
     let output = Command::new("sh")
         .args(["-euc", script])
         .env("PATH", path)
-        .current_dir(desk.path(""))
+        .current_dir(dir.path(""))
         .output()
         .expect("a shell");
     let printed = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();

@@ -59,7 +59,7 @@ fn a_checkpoint_is_read_as_it_was_written() {
     assert_eq!(read.state.hash(), written.state.hash());
     assert_eq!(&read, written);
     assert_eq!(read.to_bytes(), bytes);
-    assert_ne!(read.state.bodies[0].orientation_rest.length(), 0.0, "the rest counts, too");
+    assert_ne!(read.state.bodies[0].orientation_compensation.length(), 0.0, "the rest counts, too");
 }
 
 #[test]

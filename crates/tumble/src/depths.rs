@@ -19,11 +19,11 @@ pub struct PenetrationDepths {
 impl PenetrationDepths {
     /// The depths of a state.
     pub fn new(model: &Model, state: &State) -> Self {
-        Self::with(model, state, BodyContacts::default())
+        Self::from_contacts(model, state, BodyContacts::default())
     }
 
     /// As [`PenetrationDepths::new`], reusing the neighbour lists of `contacts`.
-    pub(crate) fn with(model: &Model, state: &State, mut contacts: BodyContacts) -> Self {
+    pub(crate) fn from_contacts(model: &Model, state: &State, mut contacts: BodyContacts) -> Self {
         let [bodies, mut walls] = contacts.max_depths(model, state);
         let bodies_and_states = model.bodies.iter().zip(&state.bodies);
         // spheres against walls are among the contacts above

@@ -26,11 +26,11 @@ pub struct Energy {
 impl Energy {
     /// The ledger of a state.
     pub fn new(model: &Model, state: &State) -> Self {
-        Self::with(model, state, BodyContacts::default())
+        Self::from_contacts(model, state, BodyContacts::default())
     }
 
     /// As [`Energy::new`], reusing the neighbour lists of `contacts`.
-    pub(crate) fn with(model: &Model, state: &State, mut contacts: BodyContacts) -> Self {
+    pub(crate) fn from_contacts(model: &Model, state: &State, mut contacts: BodyContacts) -> Self {
         let mut energy = Self {
             drag: state.totals.drag,
             dashpot: state.totals.dashpot,

@@ -60,7 +60,7 @@ impl<S: Simd> Vec3x8<S> {
 
     /// A matrix times the vector in each lane.
     #[inline(always)]
-    pub fn turned(self, simd: S, matrix: DMat3) -> Self {
+    pub fn rotated(self, simd: S, matrix: DMat3) -> Self {
         Self {
             x: self.dot(Self::splat(simd, matrix.row(0))),
             y: self.dot(Self::splat(simd, matrix.row(1))),
@@ -86,13 +86,13 @@ impl<S: Simd> Vec3x8<S> {
 
     /// The component of each vector perpendicular to the unit vector `normal`.
     #[inline(always)]
-    pub fn across(self, normal: Self) -> Self {
+    pub fn perpendicular_to(self, normal: Self) -> Self {
         self - normal * self.dot(normal)
     }
 
     /// Each vector divided by a scalar.
     #[inline(always)]
-    pub fn over(self, divisor: f64x8<S>) -> Self {
+    pub fn divided_by(self, divisor: f64x8<S>) -> Self {
         Self { x: self.x / divisor, y: self.y / divisor, z: self.z / divisor }
     }
 

@@ -79,7 +79,7 @@ pub use restore::StateError;
 pub use scratch::Scratch;
 pub use shape::{
     AreaError, SphereUnionError, Watertightness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties,
-    Mesh, MeshError, OpenMesh, ParticleMoments, Particles, Primitive, PrimitiveError,
+    Mesh, MeshError, SolidError, ParticleMoments, Particles, Primitive, PrimitiveError,
     PrincipalAxes, SampleError, Sampling, Shape, ShapeError, ShellError, sphere_union_integrals,
 };
 pub use stability::{CriticalStep, critical_dt};

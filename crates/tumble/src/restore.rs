@@ -86,7 +86,7 @@ impl State {
     ///
     /// # Errors
     /// [`StateError`] describes the first mismatch.
-    pub fn fits(&self, model: &Model) -> Result<(), StateError> {
+    pub fn check_fits(&self, model: &Model) -> Result<(), StateError> {
         let (bodies, springs) = (self.bodies.len(), self.springs.len());
         if bodies != model.bodies.len() || springs != bodies {
             return Err(StateError::BodyCount {
@@ -105,7 +105,7 @@ impl State {
                 ("position", state.position.is_finite()),
                 ("velocity", state.velocity.is_finite()),
                 ("orientation", (q.length() - 1.0).abs() <= 1e-6),
-                ("orientation_rest", state.orientation_rest.is_finite()),
+                ("orientation_compensation", state.orientation_compensation.is_finite()),
                 ("angular_momentum", state.angular_momentum.is_finite()),
                 ("energy_excess", state.energy_excess.is_finite()),
             ];
@@ -145,7 +145,7 @@ fn check_springs(
     let mut before = None;
     for spring in springs {
         let exists = (spring.wall as usize) < walls && (spring.particle as usize) < particles.len();
-        let key = exists.then(|| (spring.wall, particles.slot_of(spring.particle)));
+        let key = exists.then(|| (spring.wall, particles.slot_of_index(spring.particle)));
         if key.is_none() || before >= key {
             return Err(StateError::Spring {
                 body: name.to_owned(),
@@ -180,7 +180,7 @@ fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)>
     let body = |index: u32| model.bodies.get(index as usize);
     let slot = |index: u32, particle: u32| {
         let particles = body(index)?.shape.particles();
-        ((particle as usize) < particles.len()).then(|| particles.slot_of(particle))
+        ((particle as usize) < particles.len()).then(|| particles.slot_of_index(particle))
     };
     let a = body(first)?;
     let has_valid_other = kind == ContactKind::SphereSphere || other == 0;

@@ -31,7 +31,7 @@ pub struct BodyState {
     pub orientation: DQuat,
     /// Compensation for the rounding error of q, so that a million small rotations are as accurate as one
     /// (compensated summation, W. Kahan, Comm. ACM 8 (1965) 40).
-    pub orientation_rest: DQuat,
+    pub orientation_compensation: DQuat,
     /// Angular momentum L about the centre of mass, world axes (kg·m²/s).
     pub angular_momentum: DVec3,
     /// Energy (J) gained by the error of refined steps in contact and not yet removed; 0 without
@@ -46,7 +46,7 @@ impl Default for BodyState {
             position: DVec3::ZERO,
             velocity: DVec3::ZERO,
             orientation: DQuat::IDENTITY,
-            orientation_rest: NO_REST,
+            orientation_compensation: NO_COMPENSATION,
             angular_momentum: DVec3::ZERO,
             energy_excess: 0.0,
         }
@@ -54,7 +54,7 @@ impl Default for BodyState {
 }
 
 /// No compensation.
-pub(crate) const NO_REST: DQuat = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
+pub(crate) const NO_COMPENSATION: DQuat = DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0);
 
 /// The tangential spring of one particle in contact with one wall.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -71,7 +71,7 @@ impl World {
     /// # Errors
     /// [`StateError`] if the state does not fit the model. The world then keeps its own state.
     pub fn restore(&mut self, state: State) -> Result<(), StateError> {
-        state.fits(&self.model)?;
+        state.check_fits(&self.model)?;
         (self.state, self.scratch) = (state, Scratch::default());
         (self.mouse_spring, self.mouse_spring_work) = (None, 0.0);
         Ok(())
@@ -132,12 +132,12 @@ impl World {
 
     /// The largest penetration depths now.
     pub fn penetration_depths(&self) -> PenetrationDepths {
-        PenetrationDepths::with(&self.model, &self.state, self.scratch.body_contacts.for_query())
+        PenetrationDepths::from_contacts(&self.model, &self.state, self.scratch.body_contacts.for_query())
     }
 
     /// The energy ledger now.
     pub fn energy(&self) -> Energy {
-        Energy::with(&self.model, &self.state, self.scratch.body_contacts.for_query())
+        Energy::from_contacts(&self.model, &self.state, self.scratch.body_contacts.for_query())
     }
 }
 

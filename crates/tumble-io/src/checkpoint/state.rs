@@ -32,13 +32,13 @@ pub(super) fn bytes(state: &State) -> Vec<u8> {
             position,
             velocity,
             orientation,
-            orientation_rest,
+            orientation_compensation,
             angular_momentum,
             energy_excess,
         } = body;
         put(&mut out, position.to_array());
         put(&mut out, velocity.to_array());
-        for q in [orientation, orientation_rest] {
+        for q in [orientation, orientation_compensation] {
             put(&mut out, [q.w, q.x, q.y, q.z]);
         }
         put(&mut out, angular_momentum.to_array());
@@ -95,7 +95,7 @@ fn body(from: &mut Bytes) -> Option<BodyState> {
         position: vector(from)?,
         velocity: vector(from)?,
         orientation: quaternion(from)?,
-        orientation_rest: quaternion(from)?,
+        orientation_compensation: quaternion(from)?,
         angular_momentum: vector(from)?,
         energy_excess: from.f64()?,
     })

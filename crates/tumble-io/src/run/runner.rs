@@ -152,7 +152,7 @@ impl<'a> Run<'a> {
         // the steps since then are taken once more, one by one
         while self.world.state().step < last {
             let stepped = self.world.step();
-            if stepped.is_err() || self.world.state().fits(self.world.model()).is_err() {
+            if stepped.is_err() || self.world.state().check_fits(self.world.model()).is_err() {
                 break;
             }
             keep(&mut good, self.world.state());

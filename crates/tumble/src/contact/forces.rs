@@ -36,7 +36,7 @@ impl ContactLanes {
         if self.has_friction {
             let limit = f64x8::simd_from(simd, self.friction) * normal;
             let spring = self.friction_spring_force::<S, PREDICT>(simd, limit, &mut slip);
-            let dashpot = u.across(n) * (zero - f64x8::simd_from(simd, self.friction_damping));
+            let dashpot = u.perpendicular_to(n) * (zero - f64x8::simd_from(simd, self.friction_damping));
             let dashpot = dashpot * dashpot_part(simd, spring, dashpot, limit);
             force += spring + dashpot;
             dashpot_force += dashpot;
@@ -99,7 +99,7 @@ impl ContactLanes {
         let u = point_velocity(simd, [&velocity[0], &angular_velocity[0], &self.arm])
             - point_velocity(simd, [&velocity[1], &angular_velocity[1], &self.other_arm]);
         if self.has_surface_velocity {
-            u + Vec3x8::load(simd, &self.surface_velocity(poses)).across(n)
+            u + Vec3x8::load(simd, &self.surface_velocity(poses)).perpendicular_to(n)
         } else {
             u
         }

@@ -41,7 +41,7 @@ impl ContactLanes {
             self.is_kind(simd, ContactKind::SphereSphere).select((w + other_w).dot(n) * 0.5, zero);
         let spin = self.is_kind(simd, ContactKind::PointMesh).select(other_w.dot(n), spin);
         let spin = self.is_kind(simd, ContactKind::MeshPoint).select(w.dot(n), spin);
-        let tangential = (old + n.cross(old) * (spin * h)).across(n);
+        let tangential = (old + n.cross(old) * (spin * h)).perpendicular_to(n);
         let (old_square, new_square) = (old.dot(old), tangential.dot(tangential));
         // nothing is left of a stretch whose normal turned by a right angle
         let old =
@@ -67,9 +67,9 @@ impl ContactLanes {
 
         let mut u = drift + (w.cross(mid_arm) - other_w.cross(other_mid_arm));
         if self.has_surface_velocity {
-            u += Vec3x8::load(simd, &self.surface_velocity(poses)).across(n);
+            u += Vec3x8::load(simd, &self.surface_velocity(poses)).perpendicular_to(n);
         }
         self.stretch =
-            Vec3x8::select(has_spring, old + u.across(n) * f64x8::splat(simd, h), zeros).store();
+            Vec3x8::select(has_spring, old + u.perpendicular_to(n) * f64x8::splat(simd, h), zeros).store();
     }
 }

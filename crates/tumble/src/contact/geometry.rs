@@ -17,7 +17,7 @@ impl ContactLanes {
         let depth = is_spheres.select(contact_distance - distance, contact_distance);
         let one = f64x8::splat(simd, 1.0);
         // for a wall or mesh the separation is n already
-        let n = separation.over(is_spheres.select(distance, one));
+        let n = separation.divided_by(is_spheres.select(distance, one));
         self.normal = n.store();
         self.depth = depth.into();
         let [offset, other_offset] = self.contact_offsets(simd, depth);

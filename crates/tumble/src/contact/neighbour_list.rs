@@ -257,13 +257,13 @@ impl ChunkNeighbours {
         let mut hint = 0;
         let may_touch = |centre, radius| {
             let centre = pose.translation + pose.rotation * centre;
-            !signed_distance.outside_ball_near(
+            !signed_distance.is_ball_outside_cached(
                 centre,
                 radius + contact_distance + margin,
                 &mut hint,
             )
         };
-        a.body.shape.particles().list_where(may_touch, &mut slots);
+        a.body.shape.particles().collect_slots_where(may_touch, &mut slots);
         let mut old = old.iter().peekable();
         for &particle in &slots {
             while old.next_if(|point| point.particle < particle).is_some() {}
@@ -302,7 +302,7 @@ impl PlacedBody<'_> {
         let range = other.body.shape.radius() + distance;
         let particles = self.body.shape.particles();
         let is_near = |at: DVec3, range: f64| at.distance_squared(centre) <= range * range;
-        particles.list_where(|centre, radius| is_near(centre, radius + range), slots);
+        particles.collect_slots_where(|centre, radius| is_near(centre, radius + range), slots);
         slots.retain(|&slot| is_near(particles.at(slot), range));
     }
 }

@@ -49,7 +49,7 @@ impl Patch {
 
     /// A lower bound on the signed distance of a point (m), valid if positive.
     #[inline]
-    pub fn at_least(&self, point: DVec3) -> f64 {
+    pub fn lower_bound(&self, point: DVec3) -> f64 {
         f64::from(self.at_least) - self.displacement(point)
     }
 }
@@ -64,7 +64,7 @@ impl SignedDistance {
     /// The same as [`Self::query`], bit for bit, but faster if the patch is from a point nearby.
     ///
     /// The patch must belong to this surface or be [`Patch::NONE`]. It is replaced if it does not help.
-    pub(crate) fn query_near(
+    pub(crate) fn query_cached(
         &self,
         point: DVec3,
         patch: &mut Patch,

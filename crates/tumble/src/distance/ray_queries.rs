@@ -27,7 +27,7 @@ fn crossing(frame: &Frame, from: DVec3, to: DVec3) -> Option<f64> {
 }
 
 /// Whether the segment between two points crosses a triangle.
-pub(super) fn passes_through(tree: &Tree, from: DVec3, to: DVec3) -> bool {
+pub(super) fn intersects_segment(tree: &Tree, from: DVec3, to: DVec3) -> bool {
     let mut found = false;
     tree.along_ray(&Ray { from, along: to - from, part: [0.0, 1.0] }, |_, frame| {
         found |= crossing(frame, from, to).is_some();

@@ -148,7 +148,7 @@ impl SignedDistance {
 
     /// A lower bound of the signed distance of a point (m), without a search.
     #[inline]
-    pub(crate) fn at_least(&self, point: DVec3) -> f64 {
+    pub(crate) fn lower_bound(&self, point: DVec3) -> f64 {
         let from_box = self.bounds.distance(point);
         self.grid.as_ref().map_or(from_box, |grid| from_box.max(grid.lower_bound(point)))
     }
@@ -160,7 +160,7 @@ impl SignedDistance {
         if !point.abs().cmple(DVec3::splat(FARTHEST)).all() {
             return None;
         }
-        let at_least = self.at_least(point);
+        let at_least = self.lower_bound(point);
         if at_least > within.max(0.0) {
             return None;
         }
@@ -204,12 +204,12 @@ impl SignedDistance {
     ///
     /// The result is exact up to rounding, and then errs towards `false`. For a ball that is not finite or larger
     /// than 1e140 m it is `false`.
-    pub fn outside_ball(&self, centre: DVec3, radius: f64) -> bool {
-        self.outside_ball_near(centre, radius, &mut { NO_GROUP })
+    pub fn is_ball_outside(&self, centre: DVec3, radius: f64) -> bool {
+        self.is_ball_outside_cached(centre, radius, &mut { NO_GROUP })
     }
 
-    /// As [`Self::outside_ball`]. `hint` is a group of triangles to test first, and is updated; any value is valid.
-    pub(crate) fn outside_ball_near(&self, centre: DVec3, radius: f64, hint: &mut u32) -> bool {
+    /// As [`Self::is_ball_outside`]. `hint` is a group of triangles to test first, and is updated; any value is valid.
+    pub(crate) fn is_ball_outside_cached(&self, centre: DVec3, radius: f64, hint: &mut u32) -> bool {
         if !(centre.is_finite() && radius <= FARTHEST) {
             return false;
         }
@@ -232,8 +232,8 @@ impl SignedDistance {
     /// Whether the segment between two points outside the solid crosses its surface.
     ///
     /// If it only touches an edge or a vertex, the result depends on rounding.
-    pub fn passes_through(&self, from: DVec3, to: DVec3) -> bool {
-        from.is_finite() && to.is_finite() && ray_queries::passes_through(&self.tree, from, to)
+    pub fn intersects_segment(&self, from: DVec3, to: DVec3) -> bool {
+        from.is_finite() && to.is_finite() && ray_queries::intersects_segment(&self.tree, from, to)
     }
 
     /// The lowest and the highest coordinates of the surface (m).
@@ -260,7 +260,7 @@ impl SignedDistance {
     }
 
     /// Whether the mesh is wound inwards and was reversed.
-    pub fn is_turned(&self) -> bool {
+    pub fn is_inverted(&self) -> bool {
         self.is_turned
     }
 

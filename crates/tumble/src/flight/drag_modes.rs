@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::glide::Glide;
+use super::linear_drag::LinearDrag;
 use crate::shape::{MassScaledForm, Shape, diagonalise};
 
 /// The six modes of motion that drag damps independently, each at its own rate.
@@ -27,9 +27,9 @@ pub struct DragModes {
 impl DragModes {
     /// The modes of a body of `mass` (kg); `None` where equal particles carry the mass, so that both
     /// momenta decay at one rate.
-    pub fn of(shape: &Shape, mass: f64) -> Option<Self> {
+    pub fn new(shape: &Shape, mass: f64) -> Option<Self> {
         let moments = shape.moments();
-        if moments.carry_mass {
+        if moments.carries_mass {
             return None;
         }
         let form = MassScaledForm::new(moments, shape.principal(), mass);
@@ -66,7 +66,7 @@ impl DragModes {
             let component =
                 |vector: &[f64; 6]| -> f64 { mode.iter().zip(vector).map(|(m, y)| m * y).sum() };
             let (a, b) = (DVec3::X * component(&motion), DVec3::X * component(&weight));
-            let glide = Glide::new(time, c * rate);
+            let glide = LinearDrag::new(time, c * rate);
             loss += glide.loss(a, b);
             let (_, end) = glide.advance(a, b);
             for (sum, m) in change.iter_mut().zip(mode) {

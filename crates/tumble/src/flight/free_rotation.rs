@@ -23,7 +23,7 @@
 use glam::DVec3;
 
 use super::small_rotation::small_rotation;
-use super::turn::Turn;
+use super::turn::RotationDelta;
 
 /// λ t of a substep, small enough for fast convergence of the series.
 const SUBSTEP: f64 = 0.25;
@@ -39,31 +39,31 @@ const MIN_SEPARATION: f64 = 1e-300;
 /// `inverse` holds the inverse principal moments (1/(kg·m²)), zero for an axis without inertia.
 /// `momentum` is the angular momentum (kg·m²/s) in principal axes.
 #[inline]
-pub fn free_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> Turn {
+pub fn free_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> RotationDelta {
     small_rotation(inverse, momentum, time).unwrap_or_else(|| any_rotation(inverse, momentum, time))
 }
 
 /// As [`free_rotation`], by the general formulas, for any angle.
-pub(super) fn any_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> Turn {
+pub(super) fn any_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> RotationDelta {
     let length = length(momentum);
     if length == 0.0 || time == 0.0 {
-        return Turn::NONE;
+        return RotationDelta::NONE;
     }
     let euler = Euler::new(inverse, length);
     let mut u = momentum / length;
     let start = u;
     if euler.is_stationary(u) {
-        return Turn::about(u, euler.spin.dot(u * u) * time);
+        return RotationDelta::about(u, euler.spin.dot(u * u) * time);
     }
     let mut rest = time;
-    let mut turn = Turn::NONE;
+    let mut turn = RotationDelta::NONE;
     let elliptic = euler.elliptic_parameters(u);
     if elliptic.rate * time.abs() > MANY_SUBSTEPS * SUBSTEP {
         let period = elliptic.period();
         if period < time.abs() {
             rest = libm::fmod(time, period);
             let periods = (time / period).trunc();
-            turn = Turn::about(start, euler.angle_per_period(u, elliptic.rate, period) * periods);
+            turn = RotationDelta::about(start, euler.angle_per_period(u, elliptic.rate, period) * periods);
         }
     }
     let substeps = (elliptic.rate * rest.abs() / SUBSTEP).ceil().max(1.0);
@@ -122,7 +122,7 @@ impl Euler {
     }
 
     /// One substep of time `t`: the rotation, and u at its end.
-    fn substep(&self, start: DVec3, t: f64) -> (Turn, DVec3) {
+    fn substep(&self, start: DVec3, t: f64) -> (RotationDelta, DVec3) {
         // Taylor coefficients of u, of u·u₀ and of ψ', times powers of t
         let mut u = [DVec3::ZERO; ORDER + 1];
         let mut along = [0.0; ORDER + 1];
@@ -149,8 +149,8 @@ impl Euler {
         // shortest rotation from u to u₀, computed from their difference to keep the digits of small rotations
         let half = (1.0 - 0.25 * end.length_squared()).sqrt();
         let vector = end.cross(start) / (2.0 * half);
-        let back = Turn { scalar: -vector.length_squared() / (1.0 + half), vector };
-        (Turn::about(start, angle * t).after(back), (start + end).normalize())
+        let back = RotationDelta { scalar: -vector.length_squared() / (1.0 + half), vector };
+        (RotationDelta::about(start, angle * t).after(back), (start + end).normalize())
     }
 
     /// Coefficient k of u', from those of u up to k − 1.
@@ -191,7 +191,7 @@ impl Euler {
     /// The angle by which the body turns about L in one period (rad).
     fn angle_per_period(&self, start: DVec3, rate: f64, period: f64) -> f64 {
         let substeps = (rate * period / SUBSTEP).ceil().max(1.0);
-        let (mut u, mut turn) = (start, Turn::NONE);
+        let (mut u, mut turn) = (start, RotationDelta::NONE);
         for _ in 0..substeps as u64 {
             let (substep, end) = self.substep(u, period / substeps);
             turn = turn.after(substep);

@@ -2,7 +2,7 @@
 
 mod drag_modes;
 mod free_rotation;
-mod glide;
+mod linear_drag;
 mod small_rotation;
 #[cfg(test)]
 mod small_rotation_tests;
@@ -10,5 +10,5 @@ mod turn;
 
 pub use drag_modes::DragModes;
 pub use free_rotation::free_rotation;
-pub use glide::Glide;
-pub use turn::Turn;
+pub use linear_drag::LinearDrag;
+pub use turn::RotationDelta;

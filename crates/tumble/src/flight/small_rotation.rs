@@ -15,7 +15,7 @@
 
 use glam::DVec3;
 
-use super::turn::Turn;
+use super::turn::RotationDelta;
 
 /// ε up to which ω is constant to rounding. The error of a constant ω is |ω'| h²/2, with |ω'| h² ≤ s_max |u_1|,
 /// where s_max is the largest entry of S. The smallest is s_max − 2 ε, and the angle is at least that: the
@@ -33,7 +33,7 @@ pub(super) const SQUARES: std::ops::RangeInclusive<f64> = 1e-200..=1e200;
 
 /// The result of [`free_rotation`](super::free_rotation()), or `None` where the general formulas are needed.
 #[inline(always)]
-pub(super) fn small_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> Option<Turn> {
+pub(super) fn small_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> Option<RotationDelta> {
     let coupling = DVec3::new(inverse.z - inverse.y, inverse.x - inverse.z, inverse.y - inverse.x);
     let half_range =
         coupling.x.abs().max(coupling.y.abs()).max(coupling.z.abs()) * (0.5 * time.abs());
@@ -57,7 +57,7 @@ fn series_rotation(
     inverse: DVec3,
     coupling: DVec3,
     [square, epsilon]: [f64; 2],
-) -> Option<Turn> {
+) -> Option<RotationDelta> {
     let mut series = Series::new(start, inverse, coupling, square);
     series.add::<2>();
     series.add::<3>();
@@ -80,10 +80,10 @@ fn series_rotation(
 
 /// A rotation at constant ω, by a small rotation vector `angle` (rad).
 #[inline(always)]
-fn uniform_rotation(angle: DVec3) -> Option<Turn> {
+fn uniform_rotation(angle: DVec3) -> Option<RotationDelta> {
     let half = 0.5 * angle;
     let (sine, cosine) = sine_cosine(half.length_squared())?;
-    Some(Turn { scalar: cosine, vector: half * sine })
+    Some(RotationDelta { scalar: cosine, vector: half * sine })
 }
 
 /// sin a/a and cos a − 1 of a small angle a, from its square.
@@ -189,7 +189,7 @@ impl Series {
     /// With c = cos ψ/2, s = sin ψ/2 and h² = 1 − d²/4, the shortest rotation from u to u₀ followed by the
     /// rotation by ψ about u₀ is (c h, (s (u₀ + d/2) + c d × u₀/2)/h), where u = L/|L| and d = u − u₀.
     #[inline(always)]
-    fn turn(&self) -> Option<Turn> {
+    fn turn(&self) -> Option<RotationDelta> {
         let (start, d, half) = (self.l[0], self.d, 0.5 * self.angle);
         let (sine, c) = sine_cosine(half * half * self.square)?;
         // 1/h − 1 and h − 1; x is below 3e-4
@@ -198,6 +198,6 @@ impl Series {
         let less = more - x * (1.0 + more);
         let along = (start + 0.5 * d) * (sine * half);
         let across = d.cross(start) * ((0.5 + 0.5 * c) * self.inverse_square);
-        Some(Turn { scalar: c + less + c * less, vector: (along + across) * (1.0 + more) })
+        Some(RotationDelta { scalar: c + less + c * less, vector: (along + across) * (1.0 + more) })
     }
 }

@@ -4,14 +4,14 @@ use glam::DVec3;
 
 /// A unit quaternion minus the identity, so that a small rotation keeps all its digits.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn {
+pub struct RotationDelta {
     /// Scalar part minus 1.
     pub scalar: f64,
     /// Vector part.
     pub vector: DVec3,
 }
 
-impl Turn {
+impl RotationDelta {
     /// No rotation.
     pub(super) const NONE: Self = Self { scalar: 0.0, vector: DVec3::ZERO };
 

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::area_weights::{AreaWeights, ParticleSource};
-use super::integrals::{OpenMesh, ShellError};
+use super::integrals::{SolidError, ShellError};
 use super::mass::{MassProperties, PrincipalAxes};
 use super::mesh::Mesh;
 use super::moments::ParticleMoments;
@@ -51,7 +51,7 @@ pub enum ShapeError {
     /// The mesh cannot be sampled.
     Sample(SampleError),
     /// [`MassModel::Solid`] needs a closed mesh.
-    Open(OpenMesh),
+    Open(SolidError),
     /// [`MassModel::Shell`] needs triangles with a nonzero area.
     Shell(ShellError),
     /// The inertia overflows a double.
@@ -148,7 +148,7 @@ impl Shape {
         mut surface: Mesh,
         centre: DVec3,
         gyration: DMat3,
-        carry_mass: bool,
+        carries_mass: bool,
     ) -> Result<Self, ShapeError> {
         if places.is_empty() {
             return Err(ShapeError::NoParticles);
@@ -168,7 +168,7 @@ impl Shape {
         }
         Ok(Self {
             principal: PrincipalAxes::new(gyration, rounding * rounding),
-            moments: ParticleMoments::new(&particles, carry_mass),
+            moments: ParticleMoments::new(&particles, carries_mass),
             radius: particles.iter().fold(0.0, |m: f64, r| m.max(r.length())),
             particles,
             surface,

@@ -50,7 +50,7 @@ impl Integrals {
 
 /// Why a mesh does not bound a solid.
 #[derive(Clone, Debug, PartialEq)]
-pub enum OpenMesh {
+pub enum SolidError {
     /// The mesh has no triangles, or only degenerate ones.
     NoTriangles,
     /// Some edges are open or wrongly wound.
@@ -64,7 +64,7 @@ pub enum OpenMesh {
     },
 }
 
-impl std::fmt::Display for OpenMesh {
+impl std::fmt::Display for SolidError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NoTriangles => write!(f, "the mesh has no triangles, so it bounds no solid"),
@@ -75,7 +75,7 @@ impl std::fmt::Display for OpenMesh {
     }
 }
 
-impl std::error::Error for OpenMesh {}
+impl std::error::Error for SolidError {}
 
 /// Why a mesh has no surface to integrate over.
 #[derive(Clone, Debug, PartialEq)]
@@ -207,20 +207,20 @@ impl Mesh {
     /// size a at a distance d from the origin is that of its coordinates, about 2⁻⁵³ d/a.
     ///
     /// # Errors
-    /// [`OpenMesh`] if the mesh has no triangles, open or wrongly wound edges, no volume, or a size
+    /// [`SolidError`] if the mesh has no triangles, open or wrongly wound edges, no volume, or a size
     /// beyond the range of doubles.
-    pub fn solid_integrals(&self) -> Result<Integrals, OpenMesh> {
-        let bounds = self.bounds().ok_or(OpenMesh::NoTriangles)?;
+    pub fn solid_integrals(&self) -> Result<Integrals, SolidError> {
+        let bounds = self.bounds().ok_or(SolidError::NoTriangles)?;
         let closedness = self.watertightness();
         if closedness.triangles == 0 {
-            return Err(OpenMesh::NoTriangles);
+            return Err(SolidError::NoTriangles);
         }
         if !closedness.is_closed() {
-            return Err(OpenMesh::Edges(closedness));
+            return Err(SolidError::Edges(closedness));
         }
         let size = bounds.size();
         if !SIZES.contains(&size) {
-            return Err(OpenMesh::OutOfRange { size });
+            return Err(SolidError::OutOfRange { size });
         }
 
         // volume and centre first, since the second moment is taken about the centre
@@ -228,7 +228,7 @@ impl Mesh {
         let origin = bounds.centre();
         let about_box = self.moments(origin, measures);
         if about_box.measure.abs() <= NEGLIGIBLE * size * about_box.area {
-            return Err(OpenMesh::NoVolume);
+            return Err(SolidError::NoVolume);
         }
         let centre = origin + about_box.first / (4.0 * about_box.measure);
 

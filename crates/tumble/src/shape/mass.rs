@@ -60,7 +60,7 @@ impl PrincipalAxes {
     /// Moments below `1e-12` of the largest, or below `floor`, become exactly zero. `floor` has the unit
     /// of the tensor and is the inertia that rounding of the particles' coordinates can produce. Particles
     /// on a line therefore have exactly no inertia about it, and no torque can spin them up.
-    pub fn of(tensor: DMat3, floor: f64) -> Self {
+    pub fn new(tensor: DMat3, floor: f64) -> Self {
         let (values, vectors) = diagonalise(tensor.to_cols_array_2d());
         let mut order = [0, 1, 2];
         order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));

@@ -15,19 +15,19 @@ pub struct ParticleMoments {
     /// Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) (m²).
     pub second: DMat3,
     /// Whether equal particles carry the mass, so that drag acts on both momenta at one rate.
-    pub carry_mass: bool,
+    pub carries_mass: bool,
 }
 
 impl ParticleMoments {
     /// The moments of unweighted particles.
-    pub(super) fn new(particles: &Particles, carry_mass: bool) -> Self {
-        let first = if carry_mass { DVec3::ZERO } else { particles.iter().sum() };
+    pub(super) fn new(particles: &Particles, carries_mass: bool) -> Self {
+        let first = if carries_mass { DVec3::ZERO } else { particles.iter().sum() };
         let second = particles.iter().fold(DMat3::ZERO, |sum, r| sum + outer(r, r));
         Self {
             count: particles.len() as f64,
             first,
             second: inertia_from_second_moment(second),
-            carry_mass,
+            carries_mass,
         }
     }
 
@@ -41,7 +41,7 @@ impl ParticleMoments {
             second += outer(r, r) * weight;
         }
         let second = inertia_from_second_moment(second);
-        Self { count, first, second, carry_mass: false }
+        Self { count, first, second, carries_mass: false }
     }
 }
 

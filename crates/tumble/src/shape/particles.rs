@@ -108,7 +108,7 @@ impl Particles {
 
     /// Appends the slots of all particles, in order, except those inside a bounding sphere (centre and
     /// radius, m) for which `may_matter` is false.
-    pub(crate) fn list_where(
+    pub(crate) fn collect_slots_where(
         &self,
         mut may_matter: impl FnMut(DVec3, f64) -> bool,
         slots: &mut Vec<u32>,
@@ -138,12 +138,12 @@ impl Particles {
     }
 
     /// The index of the particle in a slot.
-    pub(crate) fn index_in(&self, slot: u32) -> u32 {
+    pub(crate) fn index_of_slot(&self, slot: u32) -> u32 {
         self.index[slot as usize]
     }
 
     /// The slot of the particle with this index.
-    pub(crate) fn slot_of(&self, index: u32) -> u32 {
+    pub(crate) fn slot_of_index(&self, index: u32) -> u32 {
         self.slot[index as usize]
     }
 

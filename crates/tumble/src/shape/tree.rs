@@ -17,14 +17,14 @@ pub(super) const LEAF_SIZE: usize = LEAF_GROUPS * LANES;
 
 /// The affine function f(r) = `offset` − `slope`·r, zero on a plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ramp {
+pub(crate) struct AffineFunction {
     /// The value at the origin.
     pub offset: f64,
     /// The negative gradient.
     pub slope: DVec3,
 }
 
-impl Ramp {
+impl AffineFunction {
     /// The value at a position.
     #[inline(always)]
     pub fn at(&self, place: DVec3) -> f64 {
@@ -114,7 +114,7 @@ impl Node {
     /// For which particles of the node the ramp is positive. A leaf is tested by its box only, since
     /// opening it is as cheap as the second test.
     #[inline(always)]
-    pub fn coverage(&self, ramp: &Ramp, is_leaf: bool) -> Coverage {
+    pub fn coverage(&self, ramp: &AffineFunction, is_leaf: bool) -> Coverage {
         let middle = ramp.at(self.centre);
         let extent = ramp.slope.abs().dot(self.half);
         // within rounding of zero the particles are tested one by one
@@ -140,13 +140,13 @@ impl Node {
 
     /// An upper bound of the ramp over the node, from its scatter; close for planar nodes of any orientation.
     #[inline(always)]
-    pub fn upper_bound_from_scatter(&self, ramp: &Ramp) -> f64 {
+    pub fn upper_bound_from_scatter(&self, ramp: &AffineFunction) -> f64 {
         ramp.at(self.moments.mean) + self.deviation(ramp.slope)
     }
 
     /// An upper bound of the ramp over the node, from its box.
     #[inline(always)]
-    pub fn upper_bound_from_box(&self, ramp: &Ramp) -> f64 {
+    pub fn upper_bound_from_box(&self, ramp: &AffineFunction) -> f64 {
         ramp.at(self.centre) + ramp.slope.abs().dot(self.half)
     }
 

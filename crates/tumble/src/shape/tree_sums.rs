@@ -4,7 +4,7 @@ use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::particles::{Group, Particles};
-use super::tree::{Coverage, Moments, Node, Ramp, Subtree};
+use super::tree::{Coverage, Moments, Node, AffineFunction, Subtree};
 use crate::lanes::{LANES, Vec3x8, largest, positive, sum};
 
 /// Capacity of the traversal stack; a tree of 2³² particles needs no more.
@@ -16,7 +16,7 @@ const TOLERANCE: f64 = 1e-4;
 
 /// Sums of a ramp f over a set of particles, each multiplied by its weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct RampSums {
+pub(crate) struct AffineSums {
     /// Σ f.
     pub sum: f64,
     /// Σ f r.
@@ -29,7 +29,7 @@ pub(crate) struct RampSums {
 
 impl Particles {
     /// Sums of `ramp` over the particles at which it is positive; if `within` is given, it must be positive too.
-    pub(crate) fn sums(&self, level: Level, ramp: &Ramp, within: Option<&Ramp>) -> RampSums {
+    pub(crate) fn sums(&self, level: Level, ramp: &AffineFunction, within: Option<&AffineFunction>) -> AffineSums {
         match (within, self.is_weighted()) {
             (None, false) => {
                 dispatch!(level, simd => self.sums_in::<_, 0, false>(simd, ramp, &[]))
@@ -51,13 +51,13 @@ impl Particles {
     fn sums_in<S: Simd, const N: usize, const WEIGHTED: bool>(
         &self,
         simd: S,
-        ramp: &Ramp,
-        within: &[Ramp; N],
-    ) -> RampSums {
+        ramp: &AffineFunction,
+        within: &[AffineFunction; N],
+    ) -> AffineSums {
         simd.vectorize(
             #[inline(always)]
             || {
-                let mut whole = RampSums { largest: Some(0.0), ..RampSums::default() };
+                let mut whole = AffineSums { largest: Some(0.0), ..AffineSums::default() };
                 let mut lanes = LaneSums::zero(simd);
                 let mut stack = Stack::new(self.nodes());
                 while let Some((subtree, _)) = stack.pop() {
@@ -76,7 +76,7 @@ impl Particles {
                             Some([a, b]) => stack.push_both((a, 0.0), (b, 0.0)),
                             None => {
                                 for group in self.groups(simd, subtree) {
-                                    let value = LaneRamp::positive(simd, &group, ramp, within);
+                                    let value = LaneAffine::positive(simd, &group, ramp, within);
                                     let mut weighted = value;
                                     if WEIGHTED {
                                         weighted *= self.weights(simd, &group);
@@ -93,16 +93,16 @@ impl Particles {
     }
 
     /// The largest value of `ramp` over the particles, to a relative 10⁻⁴; zero if it is positive nowhere.
-    pub(crate) fn largest(&self, level: Level, ramp: &Ramp) -> f64 {
+    pub(crate) fn largest(&self, level: Level, ramp: &AffineFunction) -> f64 {
         dispatch!(level, simd => self.largest_in(simd, ramp))
     }
 
     #[inline(always)]
-    fn largest_in<S: Simd>(&self, simd: S, ramp: &Ramp) -> f64 {
+    fn largest_in<S: Simd>(&self, simd: S, ramp: &AffineFunction) -> f64 {
         simd.vectorize(
             #[inline(always)]
             || {
-                let values = LaneRamp::splat(simd, ramp);
+                let values = LaneAffine::splat(simd, ramp);
                 let mut best = 0.0f64;
                 let mut stack = Stack::new(self.nodes());
                 while let Some((subtree, bound)) = stack.pop() {
@@ -137,16 +137,16 @@ impl Particles {
     }
 
     /// Appends the slots of all particles at which `ramp` is positive, in order.
-    pub(crate) fn list_positive(&self, level: Level, ramp: &Ramp, slots: &mut Vec<u32>) {
+    pub(crate) fn collect_positive_slots(&self, level: Level, ramp: &AffineFunction, slots: &mut Vec<u32>) {
         dispatch!(level, simd => self.list_positive_in(simd, ramp, slots));
     }
 
     #[inline(always)]
-    fn list_positive_in<S: Simd>(&self, simd: S, ramp: &Ramp, slots: &mut Vec<u32>) {
+    fn list_positive_in<S: Simd>(&self, simd: S, ramp: &AffineFunction, slots: &mut Vec<u32>) {
         simd.vectorize(
             #[inline(always)]
             || {
-                let values = LaneRamp::splat(simd, ramp);
+                let values = LaneAffine::splat(simd, ramp);
                 let mut stack = Stack::new(self.nodes());
                 while let Some((subtree, _)) = stack.pop() {
                     let node = self.node(subtree);
@@ -171,7 +171,7 @@ impl Particles {
     }
 
     #[inline(always)]
-    fn upper_bound(&self, subtree: Subtree, ramp: &Ramp) -> f64 {
+    fn upper_bound(&self, subtree: Subtree, ramp: &AffineFunction) -> f64 {
         self.node(subtree).upper_bound_from_box(ramp)
     }
 
@@ -210,10 +210,10 @@ impl Stack {
     }
 }
 
-impl RampSums {
+impl AffineSums {
     /// Adds all particles of a node, by f(r) = f(r̄) − slope·(r − r̄) and Σ (r − r̄) = 0.
     #[inline(always)]
-    fn add(&mut self, moments: &Moments, ramp: &Ramp) {
+    fn add(&mut self, moments: &Moments, ramp: &AffineFunction) {
         let Moments { count, mean: place, .. } = *moments;
         let mean = ramp.at(place);
         let scattered = moments.scatter_times(ramp.slope);
@@ -234,7 +234,7 @@ impl RampSums {
     }
 }
 
-/// [`RampSums`] in eight lanes.
+/// [`AffineSums`] in eight lanes.
 struct LaneSums<S: Simd> {
     sum: f64x8<S>,
     moment: Vec3x8<S>,
@@ -260,14 +260,14 @@ impl<S: Simd> LaneSums<S> {
 }
 
 /// A ramp, the same in each lane.
-struct LaneRamp<S: Simd> {
+struct LaneAffine<S: Simd> {
     offset: f64x8<S>,
     slope: Vec3x8<S>,
 }
 
-impl<S: Simd> LaneRamp<S> {
+impl<S: Simd> LaneAffine<S> {
     #[inline(always)]
-    fn splat(simd: S, ramp: &Ramp) -> Self {
+    fn splat(simd: S, ramp: &AffineFunction) -> Self {
         Self { offset: f64x8::splat(simd, ramp.offset), slope: Vec3x8::splat(simd, ramp.slope) }
     }
 
@@ -281,13 +281,13 @@ impl<S: Simd> LaneRamp<S> {
     fn positive<const N: usize>(
         simd: S,
         group: &Group<S>,
-        ramp: &Ramp,
-        within: &[Ramp; N],
+        ramp: &AffineFunction,
+        within: &[AffineFunction; N],
     ) -> f64x8<S> {
         let zero = f64x8::splat(simd, 0.0);
-        let mut value = positive(simd, LaneRamp::splat(simd, ramp).values(simd, group));
+        let mut value = positive(simd, LaneAffine::splat(simd, ramp).values(simd, group));
         for ramp in within {
-            let is_within = LaneRamp::splat(simd, ramp).at(group.place).simd_gt(zero);
+            let is_within = LaneAffine::splat(simd, ramp).at(group.place).simd_gt(zero);
             value = is_within.select(value, zero);
         }
         value

@@ -7,8 +7,8 @@ use super::*;
 use crate::lanes::levels;
 
 /// The same sums, one particle after the other.
-fn plain(particles: &Particles, ramp: &Ramp, within: Option<&Ramp>) -> (RampSums, f64) {
-    let (mut sums, mut largest) = (RampSums::default(), 0.0f64);
+fn plain(particles: &Particles, ramp: &AffineFunction, within: Option<&AffineFunction>) -> (AffineSums, f64) {
+    let (mut sums, mut largest) = (AffineSums::default(), 0.0f64);
     for (index, place) in particles.iter().enumerate() {
         let value = ramp.at(place);
         if value > 0.0 && within.is_none_or(|within| within.at(place) > 0.0) {
@@ -61,14 +61,14 @@ fn weights(kind: u8, count: usize) -> Option<Vec<f64>> {
     (kind > 0).then(|| (0..count).map(one).collect())
 }
 
-fn check(places: &[DVec3], ramp: &Ramp, within: Option<&Ramp>) -> Result<(), TestCaseError> {
+fn check(places: &[DVec3], ramp: &AffineFunction, within: Option<&AffineFunction>) -> Result<(), TestCaseError> {
     check_all(&Particles::new(places.iter().copied()), ramp, within)
 }
 
 fn check_all(
     particles: &Particles,
-    ramp: &Ramp,
-    within: Option<&Ramp>,
+    ramp: &AffineFunction,
+    within: Option<&AffineFunction>,
 ) -> Result<(), TestCaseError> {
     let places: Vec<DVec3> = particles.iter().collect();
     let weight: f64 = (0..places.len()).map(|i| particles.weight(i)).sum();
@@ -89,7 +89,7 @@ fn check_all(
     prop_assert!(found >= largest * (1.0 - 1.1e-4) - 1e-14 * size, "{found} {largest}");
     // the list has all particles with clearly positive values, and none with others
     let mut slots = Vec::new();
-    particles.list_positive(levels()[0], ramp, &mut slots);
+    particles.collect_positive_slots(levels()[0], ramp, &mut slots);
     prop_assert!(slots.is_sorted_by(|a, b| a < b));
     prop_assert!(slots.iter().all(|&slot| ramp.at(particles.at(slot)) > 0.0));
     let clear = places.iter().filter(|p| ramp.at(**p) > 1e-7 * size).count();
@@ -99,7 +99,7 @@ fn check_all(
         prop_assert_eq!(particles.sums(level, ramp, within), best, "{:?}", level);
         prop_assert_eq!(particles.largest(level, ramp), found, "{:?}", level);
         let mut again = Vec::new();
-        particles.list_positive(level, ramp, &mut again);
+        particles.collect_positive_slots(level, ramp, &mut again);
         prop_assert_eq!(&again, &slots, "{:?}", level);
     }
     Ok(())
@@ -121,13 +121,13 @@ proptest! {
         weigh in 0u8..4,
     ) {
         let places = places(kind, count, &seeds);
-        let mut ramp = Ramp { offset, slope };
-        let mut other = other.map(|(slope, offset)| Ramp { offset, slope });
+        let mut ramp = AffineFunction { offset, slope };
+        let mut other = other.map(|(slope, offset)| AffineFunction { offset, slope });
         if on_a_particle {
             ramp.offset = slope.dot(places[count / 2]);
-            other = other.map(|r| Ramp { offset: r.slope.dot(places[count / 3]), ..r });
+            other = other.map(|r| AffineFunction { offset: r.slope.dot(places[count / 3]), ..r });
         }
-        let ramp = Ramp { offset: ramp.offset * size, slope: ramp.slope * size };
+        let ramp = AffineFunction { offset: ramp.offset * size, slope: ramp.slope * size };
         let mut particles = Particles::new(places.iter().copied());
         if let Some(weights) = weights(weigh, count) {
             particles = particles.with_weights(&weights);
@@ -142,7 +142,7 @@ proptest! {
     ) {
         let places = places(2, 5000, &[seed]);
         let normal = seed.normalize_or(DVec3::X);
-        check(&places, &Ramp { offset: 0.3 + depth, slope: normal }, None)?;
+        check(&places, &AffineFunction { offset: 0.3 + depth, slope: normal }, None)?;
     }
 }
 
@@ -150,9 +150,9 @@ proptest! {
 fn sums_over_a_million_particles_agree_with_a_plain_loop() {
     let places = places(1, 1_000_000, &[DVec3::X]);
     let slope = DVec3::new(0.36, -0.48, 0.8);
-    check(&places, &Ramp { offset: -0.9, slope }, None).unwrap();
-    let other = Ramp { offset: 0.1, slope: DVec3::new(0.1, 0.9, -0.2) };
-    check(&places, &Ramp { offset: 0.2, slope }, Some(&other)).unwrap();
+    check(&places, &AffineFunction { offset: -0.9, slope }, None).unwrap();
+    let other = AffineFunction { offset: 0.1, slope: DVec3::new(0.1, 0.9, -0.2) };
+    check(&places, &AffineFunction { offset: 0.2, slope }, Some(&other)).unwrap();
 }
 
 #[test]
@@ -161,14 +161,14 @@ fn weights_do_not_change_slots_or_bounds() {
     let plain = Particles::new(places.iter().copied());
     let weighted = plain.clone().with_weights(&weights(2, places.len()).unwrap());
     assert_eq!(plain.nodes(), weighted.nodes());
-    assert!((0..10_000).all(|i| plain.slot_of(i) == weighted.slot_of(i)));
+    assert!((0..10_000).all(|i| plain.slot_of_index(i) == weighted.slot_of_index(i)));
     assert_eq!((plain.weight(1), weighted.weight(0)), (1.0, 0.0));
-    let ramp = Ramp { offset: -0.2, slope: DVec3::new(0.36, -0.48, 0.8) };
+    let ramp = AffineFunction { offset: -0.2, slope: DVec3::new(0.36, -0.48, 0.8) };
     assert_eq!(plain.largest(levels()[0], &ramp), weighted.largest(levels()[0], &ramp));
     // particles of zero weight contribute nothing
     let nothing = plain.with_weights(&[0.0; 10_000]);
     assert_eq!(nothing.sums(levels()[0], &ramp, None).sum, 0.0);
-    assert_eq!(nothing.sums(levels()[0], &Ramp { offset: 9.0, ..ramp }, None).sum, 0.0);
+    assert_eq!(nothing.sums(levels()[0], &AffineFunction { offset: 9.0, ..ramp }, None).sum, 0.0);
 }
 
 #[test]
@@ -178,8 +178,8 @@ fn the_root_of_a_tilted_flat_face_close_to_a_wall_is_not_opened() {
     let slope = DVec3::ONE.normalize();
     let particles = Particles::new(places.iter().copied());
     let root = &particles.nodes()[0];
-    assert_eq!(root.coverage(&Ramp { offset: 0.3 + 1e-4, slope }, false), Coverage::All);
-    assert_eq!(root.coverage(&Ramp { offset: 0.3 - 1e-4, slope }, false), Coverage::None);
+    assert_eq!(root.coverage(&AffineFunction { offset: 0.3 + 1e-4, slope }, false), Coverage::All);
+    assert_eq!(root.coverage(&AffineFunction { offset: 0.3 - 1e-4, slope }, false), Coverage::None);
 }
 
 #[test]
@@ -188,18 +188,18 @@ fn particles_on_the_zero_plane_of_the_other_ramp_do_not_count() {
         .map(|i| DVec3::new(f64::from(i % 32) * 0.25, 0.0, f64::from(i / 32) * 0.25))
         .collect();
     let particles = Particles::new(layer);
-    let ramp = Ramp { offset: 1.0, slope: DVec3::ZERO };
-    let on = Ramp { offset: 0.0, slope: DVec3::Y };
+    let ramp = AffineFunction { offset: 1.0, slope: DVec3::ZERO };
+    let on = AffineFunction { offset: 0.0, slope: DVec3::Y };
     assert_eq!(particles.sums(levels()[0], &ramp, Some(&on)).sum, 0.0);
 }
 
 #[test]
 fn the_sums_over_no_particles_are_zero() {
     let none = Particles::default();
-    let ramp = Ramp { offset: 1.0, slope: DVec3::X };
+    let ramp = AffineFunction { offset: 1.0, slope: DVec3::X };
     assert_eq!(
         none.sums(levels()[0], &ramp, None),
-        RampSums { largest: Some(0.0), ..RampSums::default() }
+        AffineSums { largest: Some(0.0), ..AffineSums::default() }
     );
     assert_eq!(none.largest(levels()[0], &ramp), 0.0);
 }

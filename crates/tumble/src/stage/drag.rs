@@ -17,7 +17,7 @@ pub fn drag(batch: &mut Batch) {
 /// Otherwise F = −c (N v + ω × S) and τ = −c (S × v + G ω), with S = Σ R rᵢ and G = R Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) Rᵀ.
 fn body_drag(body: &BodyModel, state: &BodyState, c: f64) -> Wrench {
     let moments = body.shape.moments();
-    if moments.carry_mass {
+    if moments.carries_mass {
         let rate = c / body.particle_mass();
         return Wrench {
             force: -rate * body.mass * state.velocity,

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::flight::{Glide, Turn, free_rotation};
+use crate::flight::{LinearDrag, RotationDelta, free_rotation};
 use crate::{Batch, BodyModel, BodyState, Model};
 
 /// Advances the bodies in free flight by the whole step `h` (s).
@@ -70,7 +70,7 @@ fn uniform_drag_flight(
         state.velocity += gravity * h;
         return 0.0;
     }
-    let glide = Glide::new(h, rate);
+    let glide = LinearDrag::new(h, rate);
     let spin_energy = rotate(body, state, glide.free_time());
     let lost =
         body.mass * glide.loss(state.velocity, gravity) + spin_energy * glide.rotational_loss();
@@ -94,24 +94,24 @@ fn rotate(body: &BodyModel, state: &mut BodyState, h: f64) -> f64 {
     let axes = &body.shape.principal().axes;
     let momentum = axes.transpose() * (q.conjugate() * momentum);
     let turn = free_rotation(inverse, momentum, h);
-    let increment = quaternion(Turn { vector: *axes * turn.vector, ..turn });
+    let increment = quaternion(RotationDelta { vector: *axes * turn.vector, ..turn });
     rotate_by(state, q * increment);
     0.5 * momentum.dot(inverse * momentum)
 }
 
 /// The rotation quaternion minus the identity.
-fn quaternion(turn: Turn) -> DQuat {
+fn quaternion(turn: RotationDelta) -> DQuat {
     DQuat::from_xyzw(turn.vector.x, turn.vector.y, turn.vector.z, turn.scalar)
 }
 
-/// q ← q + `increment`, as a compensated sum: the rounding error goes into `orientation_rest`.
+/// q ← q + `increment`, as a compensated sum: the rounding error goes into `orientation_compensation`.
 fn rotate_by(state: &mut BodyState, increment: DQuat) {
-    let (q, rest) = two_sum(state.orientation, increment + state.orientation_rest);
+    let (q, rest) = two_sum(state.orientation, increment + state.orientation_compensation);
     // normalise, again compensated
     let defect = (q.length_squared() - 1.0) + 2.0 * q.dot(rest);
     let (q, rest) = fast_two_sum(q, rest + q * (-0.5 * defect));
     state.orientation = q;
-    state.orientation_rest = rest;
+    state.orientation_compensation = rest;
 }
 
 /// A sum and its rounding error, by component (2Sum: D. E. Knuth, *The Art of Computer Programming* 2, 4.2.2).

@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::kick::kinematic_totals;
-use crate::state::NO_REST;
+use crate::state::NO_COMPENSATION;
 use crate::{Batch, BodyForces, BodyModel, BodyState, RunTotals, Wrench};
 
 /// Advances every free body by h with the forces of the start of the step.
@@ -44,7 +44,7 @@ fn advance(
     // 6: quaternion update with the angular velocity of the start of the step
     let omega = DQuat::from_xyzw(old_omega.x, old_omega.y, old_omega.z, 0.0);
     state.orientation = (state.orientation + omega * state.orientation * (0.5 * h)).normalize();
-    state.orientation_rest = NO_REST;
+    state.orientation_compensation = NO_COMPENSATION;
 
     // 7: angular momentum; ω follows from it through the inertia in the new orientation
     state.angular_momentum += total.torque * h;

@@ -81,7 +81,7 @@ impl<'a> PairPoses<'a> {
     /// Writes bodies, particles and the parameters of the law into a lane.
     #[inline(always)]
     pub fn write_law(&self, pair: &Pair, point: &Point, lane: usize, lanes: &mut ContactLanes) {
-        let index = |body: u32, slot| self.particles(body).index_in(slot);
+        let index = |body: u32, slot| self.particles(body).index_of_slot(slot);
         let Pair { first, second, kind, law, .. } = pair;
         let (particle, other) = match kind {
             ContactKind::SphereSphere => {

@@ -123,7 +123,7 @@ impl MeshQuery<'_> {
             return Err(gap);
         }
         let patch = self.mesh_cache.patch_mut(point);
-        let nearest = signed_distance.query_near(local, patch, pair.contact_distance + self.margin);
+        let nearest = signed_distance.query_cached(local, patch, pair.contact_distance + self.margin);
         let Some(nearest) = nearest else { return Err(self.margin) };
         let depth = pair.contact_distance - nearest.distance;
         if depth <= 0.0 {
@@ -143,7 +143,7 @@ impl MeshQuery<'_> {
     ) -> Option<f64> {
         let contact_distance = self.pair.contact_distance;
         if let Some(patch) = self.mesh_cache.patch(point) {
-            let gap = patch.at_least(local) - contact_distance;
+            let gap = patch.lower_bound(local) - contact_distance;
             if gap > 0.0 {
                 return Some(gap);
             }
@@ -152,7 +152,7 @@ impl MeshQuery<'_> {
                 return None;
             }
         }
-        let gap = signed_distance.at_least(local) - contact_distance;
+        let gap = signed_distance.lower_bound(local) - contact_distance;
         (gap > 0.0).then_some(gap)
     }
 }

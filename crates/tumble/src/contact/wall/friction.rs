@@ -64,7 +64,7 @@ impl FrictionContacts {
             let near = NearWall::new(wall, kinematics).filter(|_| law.friction > 0.0);
             let Some(near) = near else { continue };
             self.slots.clear();
-            particles.list_positive(kinematics.level, &near.depth, &mut self.slots);
+            particles.collect_positive_slots(kinematics.level, &near.depth, &mut self.slots);
             let (slots, contacts) = (&self.slots, &mut self.contacts);
             dispatch!(kinematics.level, simd => springs.load(simd, index as u32, &near, slots, contacts));
         }
@@ -179,13 +179,13 @@ impl OldSprings<'_> {
         let (kinematics, particles) = (self.kinematics, self.kinematics.body.shape.particles());
         for (lane, &slot) in slots.iter().enumerate() {
             set(&mut lanes.arm, lane, particles.at(slot));
-            lanes.particle[lane] = particles.index_in(slot);
+            lanes.particle[lane] = particles.index_of_slot(slot);
         }
         let r = Vec3x8::load(simd, &lanes.arm);
         let slope = Vec3x8::splat(simd, near.depth.slope);
         lanes.depth = (f64x8::splat(simd, near.depth.offset) - slope.dot(r)).into();
         lanes.depth[slots.len()..].fill(0.0);
-        let arm = r.turned(simd, kinematics.rotation);
+        let arm = r.rotated(simd, kinematics.rotation);
         lanes.arm = arm.store();
         lanes.anchor = (Vec3x8::splat(simd, kinematics.position) + arm).store();
     }
@@ -197,7 +197,7 @@ impl OldSprings<'_> {
                 self.old = rest;
                 return Some(*first);
             }
-            let first_slot = self.kinematics.body.shape.particles().slot_of(first.particle);
+            let first_slot = self.kinematics.body.shape.particles().slot_of_index(first.particle);
             if (first.wall, first_slot).cmp(&(wall, slot)) == Ordering::Greater {
                 return None;
             }
@@ -323,7 +323,7 @@ impl WallEvaluation<'_> {
         // tangential spring to the anchor, cut to the friction limit
         let limit = normal * law.friction;
         let position = Vec3x8::splat(simd, kinematics.position) + arm;
-        let stretch = (position - Vec3x8::load(simd, &lanes.anchor)).across(n);
+        let stretch = (position - Vec3x8::load(simd, &lanes.anchor)).perpendicular_to(n);
         let tension = stretch.dot(stretch).sqrt() * law.friction_spring;
         let slips = tension.simd_gt(limit);
         let kept = slips.select(limit / tension, f64x8::splat(simd, 1.0));
@@ -338,7 +338,7 @@ impl WallEvaluation<'_> {
         lanes.slips = slips.to_bitmask();
 
         // tangential dashpot, within what the spring leaves of the limit
-        let dashpot = u.across(n) * f64x8::splat(simd, -law.friction_damping);
+        let dashpot = u.perpendicular_to(n) * f64x8::splat(simd, -law.friction_damping);
         let dashpot = weights.scale_vector(dashpot * dashpot_part(simd, friction, dashpot, limit));
         sums.dashpot += dashpot;
         sums.dashpot_torque += arm.cross(dashpot);

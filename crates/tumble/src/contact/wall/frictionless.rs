@@ -2,7 +2,7 @@
 
 use super::near_wall::NearWall;
 use crate::kinematics::Kinematics;
-use crate::shape::RampSums;
+use crate::shape::AffineSums;
 use crate::{ContactLaw, Model, Wrench};
 
 /// The springs of the walls without friction: F = k Σ δ n and τ = R (k Σ δ r × n_b).
@@ -71,7 +71,7 @@ fn near_walls<'a>(
 }
 
 /// The wrench of forces `factor` f n on the particles, from the sums over f.
-fn normal_wrench(kinematics: &Kinematics, wall: &NearWall, factor: f64, sums: &RampSums) -> Wrench {
+fn normal_wrench(kinematics: &Kinematics, wall: &NearWall, factor: f64, sums: &AffineSums) -> Wrench {
     Wrench {
         force: wall.normal * (factor * sums.sum),
         torque: kinematics.rotation * (sums.moment.cross(wall.depth.slope) * factor),

@@ -116,7 +116,7 @@ proptest! {
             let all = distance.query(p, NO_HINT, f64::INFINITY).unwrap();
             let some = distance.query(p, NO_HINT, within);
             prop_assert_eq!(some, (all.distance <= within).then_some(all));
-            prop_assert_eq!(distance.outside_ball(p, within), all.distance > within);
+            prop_assert_eq!(distance.is_ball_outside(p, within), all.distance > within);
         }
     }
 }

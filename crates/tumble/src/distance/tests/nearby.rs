@@ -25,8 +25,8 @@ fn check(mesh: &Mesh, step: f64, seed: u64) -> Result<(), TestCaseError> {
         let mut patch = Patch::NONE;
         let mut worst = None;
         walk(start, step * size, seed + i as u64, |point| {
-            let at_least = patch.at_least(point);
-            let near = distance.query_near(point, &mut patch, within);
+            let at_least = patch.lower_bound(point);
+            let near = distance.query_cached(point, &mut patch, within);
             let plain = distance.query(point, NO_HINT, within);
             let whole = distance.query(point, NO_HINT, f64::INFINITY).unwrap();
             if near != plain || (at_least > 0.0 && whole.distance < at_least) {
@@ -73,7 +73,7 @@ fn patches_do_not_change_the_triangle_in_ties() {
     for i in 0..4000 {
         let x = f64::from(i) / 2048.0 - 1.0;
         for point in [DVec3::new(x, 0.5, 0.5), DVec3::new(x, 0.625, 0.0), DVec3::new(x, x, x)] {
-            let near = distance.query_near(point, &mut patch, 1.0);
+            let near = distance.query_cached(point, &mut patch, 1.0);
             assert_eq!(near, distance.query(point, NO_HINT, 1.0), "{point}");
         }
     }
@@ -91,7 +91,7 @@ fn a_patch_saves_most_searches_for_a_slow_point() {
         let mut point = start;
         for _ in 0..40 {
             let before = format!("{patch:?}");
-            if distance.query_near(point, &mut patch, f64::INFINITY).is_some() {
+            if distance.query_cached(point, &mut patch, f64::INFINITY).is_some() {
                 queries += 1;
                 searches += i32::from(format!("{patch:?}") != before);
             }

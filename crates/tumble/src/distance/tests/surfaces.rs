@@ -57,7 +57,7 @@ fn a_mesh_wound_inwards_is_reversed() {
     let mut inwards = mesh.clone();
     inwards.triangles.iter_mut().for_each(|t| t.swap(0, 1));
     let (a, b) = (distance(&mesh), distance(&inwards));
-    assert!(b.is_turned() && !a.is_turned());
+    assert!(b.is_inverted() && !a.is_inverted());
     same(&a, &b, &points(&mesh, 300, 1));
 }
 
@@ -130,8 +130,8 @@ fn a_small_hole_does_not_change_inside_and_outside() {
         assert_eq!(nearest.distance < 0.0, way < 1.0, "{way}: {nearest:?}");
     }
     // nothing is in the hole
-    assert!(a.passes_through(2.0 * middle, -2.0 * middle));
-    assert!(!b.passes_through(2.0 * middle, 0.5 * middle));
+    assert!(a.intersects_segment(2.0 * middle, -2.0 * middle));
+    assert!(!b.intersects_segment(2.0 * middle, 0.5 * middle));
 }
 
 #[test]
@@ -191,12 +191,12 @@ fn segments_that_cross_the_surface_are_found() {
     let found = distance(&mesh);
     let at = |x: f64, y: f64, z: f64| turn() * DVec3::new(x, y, z);
     // through the hole, through the tube, past it, along the plane
-    assert!(!found.passes_through(at(0.0, -1.0, 0.0), at(0.0, 1.0, 0.0)));
-    assert!(found.passes_through(at(0.1, -1.0, 0.0), at(0.1, 1.0, 0.0)));
-    assert!(!found.passes_through(at(0.1, -1.0, 0.0), at(0.1, -0.05, 0.0)));
-    assert!(found.passes_through(at(-1.0, 0.0, 0.0), at(0.0, 0.0, 0.0)));
-    assert!(!found.passes_through(at(1.0, 1.0, 1.0), at(1.0, 1.0, 1.0)));
-    assert!(!found.passes_through(DVec3::NAN, DVec3::ZERO));
+    assert!(!found.intersects_segment(at(0.0, -1.0, 0.0), at(0.0, 1.0, 0.0)));
+    assert!(found.intersects_segment(at(0.1, -1.0, 0.0), at(0.1, 1.0, 0.0)));
+    assert!(!found.intersects_segment(at(0.1, -1.0, 0.0), at(0.1, -0.05, 0.0)));
+    assert!(found.intersects_segment(at(-1.0, 0.0, 0.0), at(0.0, 0.0, 0.0)));
+    assert!(!found.intersects_segment(at(1.0, 1.0, 1.0), at(1.0, 1.0, 1.0)));
+    assert!(!found.intersects_segment(DVec3::NAN, DVec3::ZERO));
 }
 
 #[test]
@@ -207,7 +207,7 @@ fn no_line_passes_between_two_triangles() {
         let [a, b, c] = t.map(|i| mesh.vertices[i as usize]);
         for on in [a, 0.5 * (a + b), 0.3 * b + 0.7 * c, (a + b + c) / 3.0] {
             let way = (on - 0.1) * 3.0;
-            assert!(found.passes_through(0.1 + way, 0.1 - way * 0.5), "{on}");
+            assert!(found.intersects_segment(0.1 + way, 0.1 - way * 0.5), "{on}");
         }
     }
 }
@@ -217,7 +217,7 @@ fn extreme_points_have_defined_results() {
     let found = distance(&primitive("box"));
     for p in [DVec3::NAN, DVec3::INFINITY, DVec3::new(0.0, f64::NEG_INFINITY, 0.0)] {
         assert_eq!(found.query(p, 0, f64::INFINITY), None);
-        assert!(!found.outside_ball(p, 1.0));
+        assert!(!found.is_ball_outside(p, 1.0));
     }
     let far = found.query(DVec3::X * 1e100, NO_HINT, f64::INFINITY).unwrap();
     assert!((far.distance / 1e100 - 1.0).abs() < 1e-14 && far.gradient.x > 0.999_999, "{far:?}");

@@ -117,7 +117,7 @@ fn an_open_mesh_is_refused_and_its_edges_are_listed() {
     let mut mesh = cuboid(DVec3::ONE);
     mesh.triangles.pop();
     let error = mesh.solid_integrals().unwrap_err();
-    let OpenMesh::Edges(found) = &error else { panic!("{error}") };
+    let SolidError::Edges(found) = &error else { panic!("{error}") };
     assert_eq!(found.open_edges, 3);
     assert!(found.first.iter().all(|e| e.fault == EdgeFault::Open));
     assert!(
@@ -129,14 +129,14 @@ fn an_open_mesh_is_refused_and_its_edges_are_listed() {
 #[test]
 fn meshes_without_volume_or_area_are_refused() {
     let cloud = Mesh::new(vec![DVec3::ZERO], vec![]).unwrap();
-    assert_eq!(cloud.solid_integrals(), Err(OpenMesh::NoTriangles));
+    assert_eq!(cloud.solid_integrals(), Err(SolidError::NoTriangles));
     assert_eq!(cloud.shell_integrals(), Err(ShellError::NoTriangles));
 
     // a triangle and its reverse are closed but flat, in any orientation
     let corners =
         vec![DVec3::new(0.1, 0.2, 0.3), DVec3::new(1.3, 0.7, 0.1), DVec3::new(0.2, 0.9, 0.77)];
     let flat = Mesh::new(corners.clone(), vec![[0, 1, 2], [0, 2, 1]]).unwrap();
-    assert_eq!(flat.solid_integrals(), Err(OpenMesh::NoVolume));
+    assert_eq!(flat.solid_integrals(), Err(SolidError::NoVolume));
     assert!(flat.shell_integrals().is_ok());
 
     // the area of collinear corners is zero up to rounding
@@ -145,7 +145,7 @@ fn meshes_without_volume_or_area_are_refused() {
     assert_eq!(line.shell_integrals(), Err(ShellError::NoArea));
     let point = Mesh::new(vec![corners[0]], vec![[0, 0, 0]]).unwrap();
     assert_eq!(point.shell_integrals(), Err(ShellError::NoArea));
-    assert_eq!(point.solid_integrals(), Err(OpenMesh::NoTriangles));
+    assert_eq!(point.solid_integrals(), Err(SolidError::NoTriangles));
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn sizes_beyond_the_range_of_doubles_are_refused() {
     for scale in [1e-80, 1e80, 1e300] {
         let mut mesh = cuboid(DVec3::ONE);
         mesh.vertices.iter_mut().for_each(|v| *v *= scale);
-        assert!(matches!(mesh.solid_integrals(), Err(OpenMesh::OutOfRange { .. })));
+        assert!(matches!(mesh.solid_integrals(), Err(SolidError::OutOfRange { .. })));
         assert!(matches!(mesh.shell_integrals(), Err(ShellError::OutOfRange { .. })));
     }
 }

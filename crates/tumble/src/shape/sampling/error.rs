@@ -1,6 +1,6 @@
 //! Why a mesh cannot be sampled.
 
-use crate::shape::integrals::{OpenMesh, out_of_range};
+use crate::shape::integrals::{SolidError, out_of_range};
 
 /// The maximum number of points.
 const MAX_POINTS: f64 = 2e7;
@@ -16,7 +16,7 @@ pub enum SampleError {
     /// The mesh has no triangles with an area.
     NoSurface,
     /// The mesh is not closed, so it has no inside.
-    Open(OpenMesh),
+    Open(SolidError),
     /// The mesh is smaller than 1e-60 m or larger than 1e60 m, beyond the range of doubles.
     OutOfRange {
         /// The longest edge of its bounding box (m).

@@ -7,7 +7,7 @@ use glam::DVec3;
 /// It is written in terms of z = γ h and φ₁ = (1 − e⁻ᶻ)/z, φ₂ = (1 − φ₁)/z, φ₃ = (½ − φ₂)/z, which are
 /// regular at γ = 0.
 #[derive(Clone, Copy, Debug)]
-pub struct Glide {
+pub struct LinearDrag {
     time: f64,
     rate: f64,
     /// φ at z.
@@ -47,7 +47,7 @@ impl Phi {
     }
 }
 
-impl Glide {
+impl LinearDrag {
     /// The solution over `time` h (s) with drag rate `rate` γ (1/s), F = −γ M v.
     pub fn new(time: f64, rate: f64) -> Self {
         let z = rate * time;
@@ -99,7 +99,7 @@ mod tests {
         let (v, g) = (DVec3::new(3.0, -2.0, 5.0), DVec3::new(0.3, -9.8, 0.1));
         for rate in [0.0, 1e-12, 1e-3, 0.24, 0.26, 0.49, 0.51, 1.0, 30.0, 5e3] {
             for time in [1e-3, 0.5, 1.0, -0.01] {
-                let glide = Glide::new(time, rate);
+                let glide = LinearDrag::new(time, rate);
                 let (displacement, end) = glide.advance(v, g);
                 let lost = 0.5 * (v.length_squared() - end.length_squared()) + g.dot(displacement);
                 let kinetic = 0.5 * end.length_squared() + 0.5 * v.length_squared();
@@ -114,7 +114,7 @@ mod tests {
     fn two_half_steps_equal_one_step() {
         let (v, g) = (DVec3::new(3.0, -2.0, 5.0), DVec3::new(0.3, -9.8, 0.1));
         for rate in [0.0, 1e-9, 0.7, 40.0] {
-            let (whole, half) = (Glide::new(0.5, rate), Glide::new(0.25, rate));
+            let (whole, half) = (LinearDrag::new(0.5, rate), LinearDrag::new(0.25, rate));
             let (first, middle) = half.advance(v, g);
             let (second, end) = half.advance(middle, g);
             let (displacement, once) = whole.advance(v, g);
