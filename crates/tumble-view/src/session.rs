@@ -183,7 +183,8 @@ impl Session {
             let residual = self.world.energy().total() - self.reference_energy();
             self.reference_energy = world.energy().total() - residual;
             // attach the mouse spring to the new world, unless its particle no longer exists
-            self.mouse_spring = self.mouse_spring.filter(|&spring| world.set_mouse_spring(Some(spring)));
+            self.mouse_spring =
+                self.mouse_spring.filter(|&spring| world.set_mouse_spring(Some(spring)));
             (self.scene, self.world, self.backlog) = (scene, world, 0.0);
         } else if !self.pending.contains(&edit.key) {
             self.pending.push(edit.key.clone());

@@ -78,9 +78,10 @@ pub use pair_material::{PairDamping, PairMaterial};
 pub use restore::StateError;
 pub use scratch::Scratch;
 pub use shape::{
-    AreaError, SphereUnionError, Watertightness, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties,
-    Mesh, MeshError, SolidError, ParticleMoments, Particles, Primitive, PrimitiveError,
-    PrincipalAxes, SampleError, Sampling, Shape, ShapeError, ShellError, sphere_union_integrals,
+    AreaError, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties, Mesh, MeshError,
+    ParticleMoments, Particles, Primitive, PrimitiveError, PrincipalAxes, SampleError, Sampling,
+    Shape, ShapeError, ShellError, SolidError, SphereUnionError, Watertightness,
+    sphere_union_integrals,
 };
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::MouseSpring;

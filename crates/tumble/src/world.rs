@@ -6,8 +6,8 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::stage::{self, MouseSpring};
 use crate::{
-    BodyForces, BodyModel, BodyState, PenetrationDepths, Energy, Model, Scratch, State, StateError, StepError,
-    Wrench, step::step,
+    BodyForces, BodyModel, BodyState, Energy, Model, PenetrationDepths, Scratch, State, StateError,
+    StepError, Wrench, step::step,
 };
 
 /// A simulation: a model and its state, advanced step by step.
@@ -24,7 +24,13 @@ pub struct World {
 
 impl World {
     pub(crate) fn new(model: Model, state: State) -> Self {
-        Self { model, state, scratch: Scratch::default(), mouse_spring: None, mouse_spring_work: 0.0 }
+        Self {
+            model,
+            state,
+            scratch: Scratch::default(),
+            mouse_spring: None,
+            mouse_spring_work: 0.0,
+        }
     }
 
     /// Advances time by one step of [`World::dt`].
@@ -37,9 +43,11 @@ impl World {
         };
         // half of the impulse before the step and half after
         let h = 0.5 * self.model.dt;
-        self.mouse_spring_work += stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
+        self.mouse_spring_work +=
+            stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
         step(&self.model, &mut self.state, &mut self.scratch)?;
-        self.mouse_spring_work += stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
+        self.mouse_spring_work +=
+            stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
         Ok(())
     }
 
@@ -132,7 +140,11 @@ impl World {
 
     /// The largest penetration depths now.
     pub fn penetration_depths(&self) -> PenetrationDepths {
-        PenetrationDepths::from_contacts(&self.model, &self.state, self.scratch.body_contacts.for_query())
+        PenetrationDepths::from_contacts(
+            &self.model,
+            &self.state,
+            self.scratch.body_contacts.for_query(),
+        )
     }
 
     /// The energy ledger now.

@@ -149,11 +149,11 @@ fn springs_between_bodies_that_cannot_be_are_refused() {
     advance(&mut world, 1000);
     let state = world.state().clone();
     assert!(state.pair_springs.len() >= 4, "{:?}", state.pair_springs);
-    assert_eq!(state.fits(world.model()), Ok(()));
+    assert_eq!(state.check_fits(world.model()), Ok(()));
     let spoil = |change: &dyn Fn(&mut State)| {
         let mut spoiled = state.clone();
         change(&mut spoiled);
-        spoiled.fits(world.model())
+        spoiled.check_fits(world.model())
     };
     let last = state.pair_springs.len() - 1;
     let forged: [&dyn Fn(&mut State); 7] = [

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use tumble::{
-    Body, PenetrationDepths, DQuat, DVec3, Damping, Energy, Integrator, MassModel, Material,
-    MaterialOverride, Motion, Oscillation, Prescribed, Primitive, Sampling, Shape, Surface,
-    WallBox, WallPlane, World, WorldBuilder,
+    Body, DQuat, DVec3, Damping, Energy, Integrator, MassModel, Material, MaterialOverride, Motion,
+    Oscillation, PenetrationDepths, Prescribed, Primitive, Sampling, Shape, Surface, WallBox,
+    WallPlane, World, WorldBuilder,
 };
 
 /// A linear congruential generator.
@@ -193,7 +193,10 @@ fn energy_and_depths_depend_on_the_state_only() {
             for _ in 0..30 {
                 advance(&mut world, 40);
                 assert_eq!(world.energy(), Energy::new(world.model(), world.state()));
-                assert_eq!(world.penetration_depths(), PenetrationDepths::new(world.model(), world.state()));
+                assert_eq!(
+                    world.penetration_depths(),
+                    PenetrationDepths::new(world.model(), world.state())
+                );
             }
             let (springs, depths) = (&world.state().pair_springs, world.penetration_depths());
             assert!(!springs.is_empty() && depths.walls > 0.0, "{} {depths:?}", springs.len());

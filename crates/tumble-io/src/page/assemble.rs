@@ -28,10 +28,34 @@ pub(super) struct Module {
 
 /// In an order in which each needs only those before it.
 pub(super) const MODULES: [Module; 28] = modules![
-    "math", "format", "dom", "palette", "recording", "geometry", "gl", "shaders", "camera",
-    "bodies", "walls", "lines", "arrows", "overlays", "bounds", "renderer", "picking", "player",
-    "timeline", "energy_plot", "body_table", "panel", "connection", "live_controls",
-    "mouse_spring", "keyboard", "app", "main",
+    "math",
+    "format",
+    "dom",
+    "palette",
+    "recording",
+    "geometry",
+    "gl",
+    "shaders",
+    "camera",
+    "bodies",
+    "walls",
+    "lines",
+    "arrows",
+    "overlays",
+    "bounds",
+    "renderer",
+    "picking",
+    "player",
+    "timeline",
+    "energy_plot",
+    "body_table",
+    "panel",
+    "connection",
+    "live_controls",
+    "mouse_spring",
+    "keyboard",
+    "app",
+    "main",
 ];
 
 const PAGE: &str = include_str!("../../embedded/viewer/index.html");

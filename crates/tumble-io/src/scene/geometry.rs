@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tumble::{MassModel, Mesh, Primitive, Sampling, Shape, ShapeError, Surface, sphere_union_integrals};
+use tumble::{
+    MassModel, Mesh, Primitive, Sampling, Shape, ShapeError, Surface, sphere_union_integrals,
+};
 
 use super::description::{BodyScene, Geometry, MassScene};
 use super::reader::{Range, Reader};
@@ -166,7 +168,8 @@ fn solid_balls(body: &BodyScene) -> Option<f64> {
 /// A body of solid balls about its particles; what several of them share weighs once.
 fn clump(body: &BodyScene, points: Mesh, radius: f64) -> Result<Made, GeometryError> {
     let places = &points.vertices;
-    let union = sphere_union_integrals(places, radius).map_err(|error| blame("particle_radius", error))?;
+    let union =
+        sphere_union_integrals(places, radius).map_err(|error| blame("particle_radius", error))?;
     let gyration = union.inertia() * (1.0 / union.measure);
     let shape = Shape::from_distribution(places, Mesh::default(), union.centre, gyration);
     let shape = shape.map_err(|error| blame(guilty_key(body, &error), error))?;

@@ -36,7 +36,8 @@ impl ContactLanes {
         if self.has_friction {
             let limit = f64x8::simd_from(simd, self.friction) * normal;
             let spring = self.friction_spring_force::<S, PREDICT>(simd, limit, &mut slip);
-            let dashpot = u.perpendicular_to(n) * (zero - f64x8::simd_from(simd, self.friction_damping));
+            let dashpot =
+                u.perpendicular_to(n) * (zero - f64x8::simd_from(simd, self.friction_damping));
             let dashpot = dashpot * dashpot_part(simd, spring, dashpot, limit);
             force += spring + dashpot;
             dashpot_force += dashpot;

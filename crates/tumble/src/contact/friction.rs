@@ -70,6 +70,7 @@ impl ContactLanes {
             u += Vec3x8::load(simd, &self.surface_velocity(poses)).perpendicular_to(n);
         }
         self.stretch =
-            Vec3x8::select(has_spring, old + u.perpendicular_to(n) * f64x8::splat(simd, h), zeros).store();
+            Vec3x8::select(has_spring, old + u.perpendicular_to(n) * f64x8::splat(simd, h), zeros)
+                .store();
     }
 }

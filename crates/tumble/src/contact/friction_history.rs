@@ -84,7 +84,8 @@ fn compare(model: &Model, a: &PairSpring, b: &PairSpring) -> Ordering {
 
 /// Slots of the particles of a spring.
 fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
-    let slot = |body: u32, index| model.bodies[body as usize].shape.particles().slot_of_index(index);
+    let slot =
+        |body: u32, index| model.bodies[body as usize].shape.particles().slot_of_index(index);
     match spring.kind {
         ContactKind::SphereSphere => {
             (slot(spring.first, spring.particle), slot(spring.second, spring.other))

@@ -209,7 +209,12 @@ impl SignedDistance {
     }
 
     /// As [`Self::is_ball_outside`]. `hint` is a group of triangles to test first, and is updated; any value is valid.
-    pub(crate) fn is_ball_outside_cached(&self, centre: DVec3, radius: f64, hint: &mut u32) -> bool {
+    pub(crate) fn is_ball_outside_cached(
+        &self,
+        centre: DVec3,
+        radius: f64,
+        hint: &mut u32,
+    ) -> bool {
         if !(centre.is_finite() && radius <= FARTHEST) {
             return false;
         }

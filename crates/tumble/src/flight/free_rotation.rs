@@ -63,7 +63,10 @@ pub(super) fn any_rotation(inverse: DVec3, momentum: DVec3, time: f64) -> Rotati
         if period < time.abs() {
             rest = libm::fmod(time, period);
             let periods = (time / period).trunc();
-            turn = RotationDelta::about(start, euler.angle_per_period(u, elliptic.rate, period) * periods);
+            turn = RotationDelta::about(
+                start,
+                euler.angle_per_period(u, elliptic.rate, period) * periods,
+            );
         }
     }
     let substeps = (elliptic.rate * rest.abs() / SUBSTEP).ceil().max(1.0);

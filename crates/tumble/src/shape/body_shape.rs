@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::area_weights::{AreaWeights, ParticleSource};
-use super::integrals::{SolidError, ShellError};
+use super::integrals::{ShellError, SolidError};
 use super::mass::{MassProperties, PrincipalAxes};
 use super::mesh::Mesh;
 use super::moments::ParticleMoments;

@@ -16,7 +16,7 @@ mod vertex_areas;
 mod watertight;
 
 pub use body_shape::{MassModel, Shape, ShapeError};
-pub use integrals::{Integrals, SolidError, ShellError};
+pub use integrals::{Integrals, ShellError, SolidError};
 pub(crate) use mass::diagonalise;
 pub use mass::{MassProperties, PrincipalAxes};
 pub use mesh::{Mesh, MeshError};
@@ -30,4 +30,4 @@ pub(crate) use tree::AffineFunction;
 pub(crate) use tree_sums::AffineSums;
 pub use vertex_areas::AreaError;
 pub(crate) use watertight::weld;
-pub use watertight::{Watertightness, EdgeFault, FaultyEdge};
+pub use watertight::{EdgeFault, FaultyEdge, Watertightness};

@@ -78,7 +78,10 @@ impl std::error::Error for SphereUnionError {}
 ///
 /// # Errors
 /// [`SphereUnionError`] if the radius is out of range, or there are too many overlaps.
-pub fn sphere_union_integrals(centres: &[DVec3], radius: f64) -> Result<Integrals, SphereUnionError> {
+pub fn sphere_union_integrals(
+    centres: &[DVec3],
+    radius: f64,
+) -> Result<Integrals, SphereUnionError> {
     if !SIZES.contains(&radius) {
         return Err(SphereUnionError::Radius { radius });
     }

@@ -102,7 +102,10 @@ fn too_many_overlaps_and_radii_out_of_range_are_refused() {
     assert_eq!(error, SphereUnionError::TooManyOverlaps { balls: 2000 });
     assert!(error.to_string().contains("overlap more than 25000 times"), "{error}");
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-70, 1e70] {
-        assert!(matches!(sphere_union_integrals(&many, radius), Err(SphereUnionError::Radius { .. })));
+        assert!(matches!(
+            sphere_union_integrals(&many, radius),
+            Err(SphereUnionError::Radius { .. })
+        ));
     }
     // so far apart that doubles do not resolve a sphere
     let far = [DVec3::ZERO, DVec3::X * 1e30, DVec3::X * -1e30, DVec3::new(1e30, 1.0, 0.0)];

@@ -4,7 +4,7 @@ use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::particles::{Group, Particles};
-use super::tree::{Coverage, Moments, Node, AffineFunction, Subtree};
+use super::tree::{AffineFunction, Coverage, Moments, Node, Subtree};
 use crate::lanes::{LANES, Vec3x8, largest, positive, sum};
 
 /// Capacity of the traversal stack; a tree of 2³² particles needs no more.
@@ -29,7 +29,12 @@ pub(crate) struct AffineSums {
 
 impl Particles {
     /// Sums of `ramp` over the particles at which it is positive; if `within` is given, it must be positive too.
-    pub(crate) fn sums(&self, level: Level, ramp: &AffineFunction, within: Option<&AffineFunction>) -> AffineSums {
+    pub(crate) fn sums(
+        &self,
+        level: Level,
+        ramp: &AffineFunction,
+        within: Option<&AffineFunction>,
+    ) -> AffineSums {
         match (within, self.is_weighted()) {
             (None, false) => {
                 dispatch!(level, simd => self.sums_in::<_, 0, false>(simd, ramp, &[]))
@@ -137,7 +142,12 @@ impl Particles {
     }
 
     /// Appends the slots of all particles at which `ramp` is positive, in order.
-    pub(crate) fn collect_positive_slots(&self, level: Level, ramp: &AffineFunction, slots: &mut Vec<u32>) {
+    pub(crate) fn collect_positive_slots(
+        &self,
+        level: Level,
+        ramp: &AffineFunction,
+        slots: &mut Vec<u32>,
+    ) {
         dispatch!(level, simd => self.list_positive_in(simd, ramp, slots));
     }
 

@@ -7,7 +7,11 @@ use super::*;
 use crate::lanes::levels;
 
 /// The same sums, one particle after the other.
-fn plain(particles: &Particles, ramp: &AffineFunction, within: Option<&AffineFunction>) -> (AffineSums, f64) {
+fn plain(
+    particles: &Particles,
+    ramp: &AffineFunction,
+    within: Option<&AffineFunction>,
+) -> (AffineSums, f64) {
     let (mut sums, mut largest) = (AffineSums::default(), 0.0f64);
     for (index, place) in particles.iter().enumerate() {
         let value = ramp.at(place);
@@ -61,7 +65,11 @@ fn weights(kind: u8, count: usize) -> Option<Vec<f64>> {
     (kind > 0).then(|| (0..count).map(one).collect())
 }
 
-fn check(places: &[DVec3], ramp: &AffineFunction, within: Option<&AffineFunction>) -> Result<(), TestCaseError> {
+fn check(
+    places: &[DVec3],
+    ramp: &AffineFunction,
+    within: Option<&AffineFunction>,
+) -> Result<(), TestCaseError> {
     check_all(&Particles::new(places.iter().copied()), ramp, within)
 }
 

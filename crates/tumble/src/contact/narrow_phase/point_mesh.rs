@@ -123,7 +123,8 @@ impl MeshQuery<'_> {
             return Err(gap);
         }
         let patch = self.mesh_cache.patch_mut(point);
-        let nearest = signed_distance.query_cached(local, patch, pair.contact_distance + self.margin);
+        let nearest =
+            signed_distance.query_cached(local, patch, pair.contact_distance + self.margin);
         let Some(nearest) = nearest else { return Err(self.margin) };
         let depth = pair.contact_distance - nearest.distance;
         if depth <= 0.0 {

@@ -71,7 +71,12 @@ fn near_walls<'a>(
 }
 
 /// The wrench of forces `factor` f n on the particles, from the sums over f.
-fn normal_wrench(kinematics: &Kinematics, wall: &NearWall, factor: f64, sums: &AffineSums) -> Wrench {
+fn normal_wrench(
+    kinematics: &Kinematics,
+    wall: &NearWall,
+    factor: f64,
+    sums: &AffineSums,
+) -> Wrench {
     Wrench {
         force: wall.normal * (factor * sums.sum),
         torque: kinematics.rotation * (sums.moment.cross(wall.depth.slope) * factor),
