@@ -1,8 +1,8 @@
 //! Scenes, meshes, recordings, plots and pictures for [`tumble`].
 
+mod appearance;
 pub mod checkpoint;
 pub mod export;
-mod looks;
 pub mod mesh;
 pub mod page;
 pub mod picture;

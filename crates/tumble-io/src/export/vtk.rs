@@ -11,7 +11,7 @@ use tumble::{BodyModel, DMat3, DVec3, Mesh, World};
 
 use super::draft::{beside, folder_of};
 use super::{ExportError, Exported, Job, Watch, tell};
-use crate::looks::surface_of;
+use crate::appearance::surface_of;
 use crate::replay::{Pose, ReplayFrame};
 
 pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {

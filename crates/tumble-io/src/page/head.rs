@@ -8,7 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 use tumble::{BodyModel, BodyView, DQuat, DVec3, Shape, WallBox, World};
 
-use crate::looks::{is_driven, particle_radius, surface_of};
+use crate::appearance::{is_kinematic, particle_radius, surface_of};
 use crate::scene::Scene;
 
 /// All that is constant during a run, as the page reads it.
@@ -197,7 +197,7 @@ fn of_body(body: &BodyView, shape: usize) -> BodyHead {
         shape,
         mass: model.mass,
         particle_mass: model.particle_mass(),
-        driven: is_driven(model),
+        driven: is_kinematic(model),
         moments: (principal.moments * model.mass).to_array(),
         axes: wxyz(DQuat::from_mat3(&principal.axes)),
     }

@@ -7,7 +7,7 @@ use super::legend::Trail;
 use super::raster::Layer;
 use super::surface::{self, Edge, Surface};
 use super::{MotionPicture, Pose, View, drawable, legend, moments};
-use crate::looks::DRIVEN;
+use crate::appearance::KINEMATIC_COLOUR;
 use glam::DVec3;
 
 /// Colours that the colour-blind can tell apart (Okabe and Ito 2008), without the black.
@@ -56,8 +56,8 @@ const VEIL: u8 = 96;
 
 /// The colour of a body of a picture.
 pub(super) fn colour_of(picture: &MotionPicture, body: usize) -> [f32; 3] {
-    let is_driven = picture.bodies.get(body).is_some_and(|body| body.is_driven);
-    if is_driven { DRIVEN } else { colour(body) }
+    let is_kinematic = picture.bodies.get(body).is_some_and(|body| body.is_kinematic);
+    if is_kinematic { KINEMATIC_COLOUR } else { colour(body) }
 }
 
 /// The bodies at one time, and how they are painted.
@@ -240,7 +240,7 @@ impl<'a> Studio<'a> {
                 for (body, figure) in self.figures.iter().enumerate() {
                     // what one sees through lets the light through
                     if let Some(pose) =
-                        frame.pose(body).filter(|_| !self.picture.bodies[body].is_driven)
+                        frame.pose(body).filter(|_| !self.picture.bodies[body].is_kinematic)
                     {
                         shadow.cast(surface, self.up, &self.camera, figure, &pose, weight);
                     }
@@ -309,7 +309,7 @@ impl<'a> Studio<'a> {
                     continue;
                 }
                 let colour = colour_of(&self.picture, body);
-                if !self.picture.bodies[body].is_driven {
+                if !self.picture.bodies[body].is_kinematic {
                     figure.draw(&pose, camera, &light, Paint { colour, paleness, alpha }, layer);
                 } else if alpha == 255 {
                     // where it is at last, and so that one sees what is in it

@@ -144,7 +144,7 @@ fn time_colours(picture: &MotionPicture, moment: &Moment) -> Vec<[u8; 3]> {
         };
         [mix(0) as u8, mix(1) as u8, mix(2) as u8]
     };
-    let free = (0..picture.bodies.len()).filter(|&body| !picture.bodies[body].is_driven);
+    let free = (0..picture.bodies.len()).filter(|&body| !picture.bodies[body].is_kinematic);
     let mut shown: Vec<_> = free.take(4).map(pale).collect();
     if shown.is_empty() {
         shown.push(pale(0));

@@ -19,7 +19,7 @@
 //! use tumble_io::picture::{Boundary, Frame, MotionPicture, PictureBody, Pose, encode_png, render};
 //!
 //! let bodies = [PictureBody {
-//!     name: "point", vertices: &[DVec3::ZERO], triangles: &[], is_driven: false,
+//!     name: "point", vertices: &[DVec3::ZERO], triangles: &[], is_kinematic: false,
 //! }];
 //! let boundary = [Boundary::Plane { normal: DVec3::Y, offset: 0.0 }];
 //! let frames: Vec<Frame> = (0..=10)
@@ -103,7 +103,7 @@ pub struct PictureBody<'a> {
     /// Triangles as indices into `vertices`; empty: each vertex is drawn as a small ball.
     pub triangles: &'a [[u32; 3]],
     /// Whether something other than forces moves it: it is grey, and one looks through it.
-    pub is_driven: bool,
+    pub is_kinematic: bool,
 }
 
 /// What bounds the motion.

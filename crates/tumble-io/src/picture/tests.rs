@@ -42,7 +42,7 @@ impl Case {
                 name: "body",
                 vertices,
                 triangles,
-                is_driven: false,
+                is_kinematic: false,
             })
             .collect();
         use_it(&MotionPicture {
@@ -276,7 +276,7 @@ proptest! {
             name: "any",
             vertices: &vertices,
             triangles: &triangles,
-            is_driven: false,
+            is_kinematic: false,
         }];
         let [min, max, normal] = corners;
         let open = [false, false, false, true, false, false];

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use tumble::{DVec3, Mesh, World};
 
-use crate::looks::{is_driven, surface_of};
+use crate::appearance::{is_kinematic, surface_of};
 use crate::picture::{self, Boundary, MotionPicture, PictureBody, Studio, View, encode_png};
 use crate::scene::Scene;
 
@@ -55,9 +55,9 @@ pub(crate) fn in_studio<T>(
         .bodies()
         .zip(&looks)
         .map(|(body, (surface, points))| {
-            let is_driven = is_driven(body.model());
+            let is_kinematic = is_kinematic(body.model());
             let vertices = if points.is_empty() { &surface.vertices } else { points };
-            PictureBody { name: body.name(), vertices, triangles: &surface.triangles, is_driven }
+            PictureBody { name: body.name(), vertices, triangles: &surface.triangles, is_kinematic }
         })
         .collect();
     let picture = MotionPicture {

@@ -1,16 +1,16 @@
-//! What a body looks like in pictures, on the page and in exports.
+//! Appearance of bodies in pictures, on the page and in exports.
 
 use std::borrow::Cow;
 
 use tumble::{BodyModel, DVec3, Mesh, Motion, Primitive, Surface};
 
-/// Up to so many spheres are drawn finely, …
-const FINE: usize = 60;
-/// … up to so many coarsely; of more, each is a dot.
-const COARSE: usize = 20_000;
+/// Up to this number, spheres are drawn with a fine mesh.
+const MAX_FINE_SPHERES: usize = 60;
+/// Up to this number, spheres are drawn with a coarse mesh; above it, each is a dot.
+const MAX_COARSE_SPHERES: usize = 20_000;
 
-/// The surface to draw, in the body frame (m): its own, or the spheres about its particles if it has none. Empty
-/// where bare particles are all there is to see.
+/// The surface to draw, in the body frame (m): the mesh of the body, or the spheres about its particles if it has none. Empty
+/// for bare particles.
 pub(crate) fn surface_of(body: &BodyModel) -> Cow<'_, Mesh> {
     let own = body.shape.surface();
     match body.surface {
@@ -30,19 +30,19 @@ pub(crate) fn particle_radius(body: &BodyModel) -> Option<f64> {
     }
 }
 
-/// Whether something other than forces moves a body: it may stand around the others, so one looks through it.
-pub(crate) fn is_driven(body: &BodyModel) -> bool {
+/// Whether the motion of a body is prescribed. Such a body may enclose others, so it is drawn see-through.
+pub(crate) fn is_kinematic(body: &BodyModel) -> bool {
     body.motion != Motion::Free
 }
 
-/// The colour of bodies that are driven, red, green, blue from 0 to 255.
-pub(crate) const DRIVEN: [f32; 3] = [150.0, 154.0, 160.0];
+/// Colour of kinematic bodies: red, green, blue from 0 to 255.
+pub(crate) const KINEMATIC_COLOUR: [f32; 3] = [150.0, 154.0, 160.0];
 
 /// Balls about the places; `None` of very many, and where there is no ball of that radius.
 fn spheres(places: impl ExactSizeIterator<Item = DVec3>, radius: f64) -> Option<Mesh> {
     let subdivisions = match places.len() {
-        n if n <= FINE => 2,
-        ..=COARSE => 1,
+        n if n <= MAX_FINE_SPHERES => 2,
+        ..=MAX_COARSE_SPHERES => 1,
         _ => return None,
     };
     let ball = Primitive::Sphere { radius, subdivisions }.mesh().ok()?;
