@@ -20,7 +20,10 @@ use std::path::Path;
 use sha2::{Digest, Sha256};
 use tumble::State;
 
+mod bytes;
 mod state;
+
+use bytes::Bytes;
 
 /// How every checkpoint begins: bytes that a transfer as text would change.
 pub const MAGIC: [u8; 12] = *b"\x89TUMBLE\r\n\x1a\n\0";
@@ -195,50 +198,4 @@ pub fn parse_checkpoint(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
 
 fn text(bytes: Bytes) -> Option<String> {
     String::from_utf8(bytes.0.to_vec()).ok()
-}
-
-/// Bytes that are still to be read; nothing is taken that is not there.
-#[derive(Clone, Copy)]
-struct Bytes<'a>(&'a [u8]);
-
-impl<'a> Bytes<'a> {
-    fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
-        let (taken, rest) = self.0.split_at_checked(count)?;
-        self.0 = rest;
-        Some(taken)
-    }
-
-    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
-        self.take(N)?.try_into().ok()
-    }
-
-    fn u32(&mut self) -> Option<u32> {
-        self.array().map(u32::from_le_bytes)
-    }
-
-    fn u64(&mut self) -> Option<u64> {
-        self.array().map(u64::from_le_bytes)
-    }
-
-    fn f64(&mut self) -> Option<f64> {
-        self.array().map(f64::from_le_bytes)
-    }
-
-    fn section(&mut self, name: &[u8; 4]) -> Option<Bytes<'a>> {
-        if self.take(4)? != name {
-            return None;
-        }
-        let length = usize::try_from(self.u64()?).ok()?;
-        self.take(length).map(Bytes)
-    }
-
-    /// How many items of `size` bytes follow, if there is room for so many.
-    fn count(&mut self, size: usize) -> Option<usize> {
-        let count = usize::try_from(self.u64()?).ok()?;
-        (count <= self.0.len() / size).then_some(count)
-    }
 }

@@ -5,7 +5,7 @@
 
 use tumble::{BodyState, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, RunTotals, State};
 
-use super::Bytes;
+use super::bytes::Bytes;
 
 const BODY: usize = 18 * 8;
 const SPRING: usize = 4 + 4 + 6 * 8;

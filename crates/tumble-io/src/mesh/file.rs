@@ -4,7 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
-use super::{Format, ReadError};
+use super::error::ReadError;
+use super::format::Format;
 
 /// Files above this are refused before they are read.
 pub(super) const MAX_BYTES: u64 = 4 << 30;

@@ -18,9 +18,10 @@ use std::path::Path;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
+use super::error::{Place, ReadError};
+use super::parsed::Parsed;
 use super::polygon::Faces;
 use super::text::check_text;
-use super::{Parsed, Place, ReadError};
 use data::{Buffers, error, get};
 use schema::{Document, Node, Primitive};
 

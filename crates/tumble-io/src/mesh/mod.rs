@@ -15,12 +15,23 @@
 //! # Ok::<(), tumble_io::mesh::ReadError>(())
 //! ```
 //!
+//! Data flows one way: `file` (checks the path, reads the bytes) → `format` → one reader per format (`obj`,
+//! `stl`, `ply`, `gltf`; with `text` and `polygon`) → `parsed` → [`parse_mesh`], which checks and welds.
+//! Every reader reports problems as [`ReadError`] (`error`).
+//!
+//! To add a format: add a variant to [`Format`] with its extensions, write a reader file with a function
+//! `parse` that returns `Parsed`, and call it in [`parse_mesh`]. Then add samples to `tests/mesh_formats`
+//! and a target to `fuzz/targets`.
+//!
 //! Every reader takes any bytes at all: it gives a mesh or a [`ReadError`], in memory and time that are in
 //! proportion to the size of the file. Lengths are taken as they stand: a file has no unit, tumble's is the metre.
 
+mod error;
 mod file;
+mod format;
 mod gltf;
 mod obj;
+mod parsed;
 mod ply;
 mod polygon;
 mod stl;
@@ -28,66 +39,13 @@ mod text;
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use glam::DVec3;
 use sha2::{Digest, Sha256};
 use tumble::Mesh;
 
-/// The formats that can be read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Format {
-    /// Wavefront OBJ, text (`.obj`).
-    Obj,
-    /// STL, text or binary (`.stl`).
-    Stl,
-    /// Polygon file format, text or binary of either byte order (`.ply`).
-    Ply,
-    /// glTF 2, text or binary (`.gltf`, `.glb`; the content tells which).
-    Gltf,
-}
-
-impl Format {
-    /// What can be read, for messages.
-    pub const SUPPORTED: &'static str = ".obj, .stl, .ply, .gltf, .glb";
-
-    /// The format of a file extension without its dot, in upper or lower case.
-    pub fn from_extension(extension: &str) -> Option<Self> {
-        match extension.to_ascii_lowercase().as_str() {
-            "obj" => Some(Self::Obj),
-            "stl" => Some(Self::Stl),
-            "ply" => Some(Self::Ply),
-            "gltf" | "glb" => Some(Self::Gltf),
-            _ => None,
-        }
-    }
-
-    /// Whether exact duplicates are welded unless the caller says otherwise.
-    pub fn welds(self) -> bool {
-        matches!(self, Self::Stl | Self::Gltf)
-    }
-
-    /// The format that the first bytes belong to, where they are telling.
-    fn sniff(bytes: &[u8]) -> Option<Self> {
-        match bytes {
-            [b'g', b'l', b'T', b'F', ..] => Some(Self::Gltf),
-            [b'p', b'l', b'y', b'\n' | b'\r', ..] => Some(Self::Ply),
-            [b's', b'o', b'l', b'i', b'd', b' ' | b'\n' | b'\r', ..] => Some(Self::Stl),
-            _ => None,
-        }
-    }
-}
-
-impl std::fmt::Display for Format {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Obj => "OBJ",
-            Self::Stl => "STL",
-            Self::Ply => "PLY",
-            Self::Gltf => "glTF",
-        })
-    }
-}
+pub use error::{Place, ReadError};
+pub use format::Format;
 
 /// A mesh, and what there is to know about the file it came from.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,75 +65,6 @@ pub struct MeshFile {
     pub face_count: usize,
     /// Whether exact duplicates were welded.
     pub welded: bool,
-}
-
-/// Where in a file something is wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// In a text.
-    Line {
-        /// The line, from 1.
-        line: usize,
-        /// The byte within the line, from 1.
-        column: Option<usize>,
-    },
-    /// In a binary file, in bytes from its beginning, from 0.
-    Byte(u64),
-}
-
-/// Why a file gave no mesh: what is wrong, where, and what is allowed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReadError {
-    /// The file, unless the bytes came from elsewhere.
-    pub path: Option<PathBuf>,
-    /// Where in the file, if it is at one place.
-    pub place: Option<Place>,
-    /// What is wrong, and what to do.
-    pub message: String,
-}
-
-impl ReadError {
-    fn new(place: Option<Place>, message: impl Into<String>) -> Self {
-        Self { path: None, place, message: message.into() }
-    }
-
-    fn with_path(self, path: &Path) -> Self {
-        Self { path: Some(path.to_owned()), ..self }
-    }
-}
-
-impl std::fmt::Display for ReadError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match (&self.path, self.place) {
-            (Some(path), Some(Place::Line { line, column: None })) => {
-                write!(f, "{}:{line}: ", path.display())?;
-            }
-            (Some(path), Some(Place::Line { line, column: Some(column) })) => {
-                write!(f, "{}:{line}:{column}: ", path.display())?;
-            }
-            (Some(path), Some(Place::Byte(byte))) => {
-                write!(f, "{}: at byte {byte}: ", path.display())?;
-            }
-            (Some(path), None) => write!(f, "{}: ", path.display())?,
-            (None, Some(Place::Line { line, column: None })) => write!(f, "line {line}: ")?,
-            (None, Some(Place::Line { line, column: Some(column) })) => {
-                write!(f, "line {line}, column {column}: ")?;
-            }
-            (None, Some(Place::Byte(byte))) => write!(f, "at byte {byte}: ")?,
-            (None, None) => {}
-        }
-        f.write_str(&self.message)
-    }
-}
-
-impl std::error::Error for ReadError {}
-
-/// What a reader finds in a file.
-struct Parsed {
-    vertices: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
-    face_count: usize,
-    object_count: usize,
 }
 
 /// Reads a mesh file; its extension tells the format. `weld` overrides the format's default (see the

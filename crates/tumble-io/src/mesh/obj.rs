@@ -11,9 +11,10 @@
 
 use glam::DVec3;
 
+use super::error::{Place, ReadError};
+use super::parsed::Parsed;
 use super::polygon::Faces;
 use super::text::{Style, Words, check_text, show};
-use super::{Parsed, Place, ReadError};
 
 /// Reads the bytes of an OBJ file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {

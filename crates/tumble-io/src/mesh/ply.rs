@@ -14,9 +14,10 @@ use glam::DVec3;
 
 use header::{Element, Encoding, Header, Scalar};
 
+use super::error::{Place, ReadError};
+use super::parsed::Parsed;
 use super::polygon::Faces;
 use super::text::{Style, Words};
-use super::{Parsed, Place, ReadError};
 
 /// Reads the bytes of a PLY file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {

@@ -8,8 +8,9 @@
 
 use glam::DVec3;
 
+use super::error::{Place, ReadError};
+use super::parsed::Parsed;
 use super::text::{Style, Words, check_text, show};
-use super::{Parsed, Place, ReadError};
 
 /// Bytes before the first triangle of a binary file: 80 of header, 4 of count.
 const HEADER: usize = 84;

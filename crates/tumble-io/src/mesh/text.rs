@@ -1,6 +1,6 @@
 //! Words and lines of a text format, without a copy, with the place of each for messages.
 
-use super::{Place, ReadError};
+use super::error::{Place, ReadError};
 
 /// Walks through the words of a text, line by line.
 #[derive(Clone)]

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use tumble::{DVec3, MassModel, Sampling};
 
-use super::description::{BodyScene, Copies, Geometry, MassScene};
-use super::geometry::{MASS_MODELS, SHAPE_KEYS, shape_scene};
+use super::common::{material, orientation};
+use super::description::{BodyScene, Copies, Geometry, MASS_MODELS, MassScene};
 use super::motion::motion;
-use super::read::{material, orientation};
 use super::reader::{Range, Reader};
+use super::shape::{SHAPE_KEYS, shape_scene};
 use super::surface::surface;
 
 /// The keys that say how heavy a body is; only one may be given.

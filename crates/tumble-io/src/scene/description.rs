@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use tumble::{
     DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Overlaps, Prescribed,
-    Sampling, Surface, WallBox, WallPlane,
+    Primitive, Sampling, Surface, WallBox, WallPlane,
 };
 
-use super::geometry::ShapeScene;
+/// The names of the mass models in scene files.
+pub const MASS_MODELS: [(&str, MassModel); 3] =
+    [("particles", MassModel::Particles), ("shell", MassModel::Shell), ("solid", MassModel::Solid)];
 
 /// What to simulate, and what to write of it.
 #[derive(Clone, Debug)]
@@ -111,6 +113,25 @@ pub enum Geometry {
     Shape(ShapeScene),
     /// Points, written in the scene.
     Particles(Vec<DVec3>),
+}
+
+/// A built-in shape with its keys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ShapeScene {
+    /// A shape given by formulas.
+    Primitive(Primitive),
+    /// The sitting cat of `assets/cat.obj`, two metres high before `scale`.
+    Cat,
+}
+
+impl ShapeScene {
+    /// Its name in scene files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Primitive(primitive) => primitive.name(),
+            Self::Cat => "cat",
+        }
+    }
 }
 
 /// The key that says how much mass a body has.

@@ -10,8 +10,9 @@ use super::body::MASS_KEYS;
 use super::builtin::builtin;
 use super::description::{BodyScene, Geometry, Scene};
 use super::geometry::{self, Made};
-use super::problem::{Problem, SceneError, Source};
-use super::tree::{self, Node, Place};
+use super::place::{Place, Source};
+use super::problem::{Problem, SceneError};
+use super::tree::{self, Node};
 use super::{read, reader::Reader};
 
 /// A scene file larger than this is something else.

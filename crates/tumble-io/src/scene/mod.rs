@@ -1,18 +1,34 @@
-//! Scenes: TOML files that say what to simulate.
+//! Scenes: TOML files that describe a simulation.
 //!
-//! [`load_file`] and [`load_builtin`] read a scene, lay `--set` overrides over it, check every key
-//! and build the world. Whatever is wrong is reported at once, with file, line and column.
+//! [`load_file`] and [`load_builtin`] read a scene, apply the `--set` overrides, check every key and build
+//! the world. They report all problems together, each with file, line and column.
+//!
+//! Data flows one way:
+//!
+//! 1. `load`: reads the text and runs the steps below.
+//! 2. `tree`: parses the text into a tree whose nodes know their `place`, and applies `--set`.
+//! 3. `reader`: reads keys of a table by name, type and range, and collects each `problem`.
+//! 4. `read`, `body`, `shape`, `surface`, `motion`, `common`: read each table into the `description`.
+//! 5. `geometry`, `copies`: build shapes, masses and poses; `load` builds the world from them.
+//! 6. `write`: turns the description back into TOML.
+//!
+//! To add a key: add a field to its struct in `description`, read it in the file of its table (step 4),
+//! write it in `write`, and pass it to the builder in `load`. Then document it in `docs/formats.md` and
+//! add it to `fuzz/dictionaries/scene`.
 
 mod body;
 mod builtin;
+mod common;
 mod copies;
 mod description;
 mod geometry;
 mod load;
 mod motion;
+mod place;
 mod problem;
 mod read;
 mod reader;
+mod shape;
 mod surface;
 mod tree;
 mod write;
@@ -22,6 +38,7 @@ pub use description::{
     BodyScene, BoxScene, Copies, Geometry, MassScene, MotionScene, OutputScene, Scene, WallScene,
 };
 pub use load::{LoadOptions, Loaded, load_builtin, load_file, load_text};
-pub use problem::{SceneError, Source};
+pub use place::Source;
+pub use problem::SceneError;
 pub use reader::nearest;
 pub(crate) use write::HEADER;

@@ -5,16 +5,7 @@ use std::ops::Range;
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
-use super::tree::Place;
-
-/// A text that a scene was read from.
-#[derive(Clone, Debug)]
-pub struct Source {
-    /// What to call it: the file's path, or `--set`.
-    pub name: String,
-    /// The text.
-    pub text: String,
-}
+use super::place::{Place, Source};
 
 /// More problems than this are counted, not shown.
 const MOST_SHOWN: usize = 100;

@@ -4,8 +4,9 @@ use std::cell::RefCell;
 
 use tumble::DVec3;
 
+use super::place::Place;
 use super::problem::Problem;
-use super::tree::{Entry, Node, Place, Value};
+use super::tree::{Entry, Node, Value};
 
 /// What a number may be.
 #[derive(Clone, Copy, Debug)]

@@ -1,12 +1,11 @@
 //! A TOML document as a tree in which every key and value knows where it stands, and the
 //! overrides of `--set` laid over it.
 
-use std::ops::Range;
-
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::problem::{Problem, Source};
+use super::place::{Place, Source};
+use super::problem::Problem;
 
 /// Keys of which a table may hold only one, and which mean something alone: setting one from outside takes the
 /// others out.
@@ -18,15 +17,6 @@ pub const RIVALS: [&[&str]; 3] = [
 
 /// A key of more parts than this leads nowhere.
 const MOST_PARTS: usize = 32;
-
-/// Where something stands: which source, and which bytes of it.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Place {
-    /// Index into the sources of a scene: 0 is the file, then one for each override.
-    pub source: usize,
-    /// Bytes of the source's text.
-    pub span: Range<usize>,
-}
 
 /// A value and its place.
 #[derive(Clone, Debug)]

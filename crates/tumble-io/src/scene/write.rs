@@ -6,8 +6,9 @@ use tumble::{
     WallBox, WallPlane,
 };
 
-use super::description::{BodyScene, Geometry, MassScene, MotionScene, Scene};
-use super::geometry::{MASS_MODELS, ShapeScene};
+use super::description::{
+    BodyScene, Geometry, MASS_MODELS, MassScene, MotionScene, Scene, ShapeScene,
+};
 
 /// How every scene that a run wrote begins.
 pub const HEADER: &str = "# The scene as run, every default written out.";

@@ -8,7 +8,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 
-use super::super::{ReadError, file};
+use super::super::error::ReadError;
+use super::super::file;
 use super::schema::{Accessor, Document, Kind, Sparse, SparsePart};
 
 /// The buffers of a document. Each is loaded when it is first needed, a file once.

@@ -1,6 +1,6 @@
 //! The header of a PLY file: what it promises, and whether that can be.
 
-use super::super::ReadError;
+use super::super::error::ReadError;
 use super::super::text::{Words, show};
 
 #[derive(Clone, Copy, PartialEq)]

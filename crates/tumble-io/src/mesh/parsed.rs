@@ -1,0 +1,11 @@
+//! What each mesh reader returns.
+
+use glam::DVec3;
+
+/// The vertices and triangles of a file, and its counts.
+pub(super) struct Parsed {
+    pub(super) vertices: Vec<DVec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) face_count: usize,
+    pub(super) object_count: usize,
+}
