@@ -1,11 +1,11 @@
 //! The report on a finished run.
 
-use tumble_io::run::{Finished, RunFolder, Summary};
+use tumble_io::run::{FinishedRun, RunFolder, Summary};
 
 use crate::format::{columns, count, number};
 
 /// The summary of a run as two columns.
-pub fn report(finished: &Finished, folder: &RunFolder) -> String {
+pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
     let (s, e) = (&finished.summary, &finished.energy);
     let dissipated = e.drag + e.dashpot + e.slip;
     // gravitational energy has an arbitrary zero, so that the total is no scale for the residual
@@ -60,7 +60,7 @@ fn integrator(s: &Summary) -> String {
 }
 
 /// All steps of the run and, if it was resumed, how many of them were taken now.
-fn steps(finished: &Finished) -> String {
+fn steps(finished: &FinishedRun) -> String {
     let all = count(finished.summary.steps);
     if finished.steps_here == finished.summary.steps {
         return all;

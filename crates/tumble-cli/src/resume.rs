@@ -30,7 +30,7 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     // if --out is the checkpoint's own folder, its files are continued, not overwritten
     let is_own = args.out.as_ref().is_some_and(|out| {
         let folder = args.checkpoint.parent().filter(|_| !args.checkpoint.is_dir());
-        RunFolder::existing(folder.unwrap_or(&args.checkpoint)).is(out)
+        RunFolder::from_path(folder.unwrap_or(&args.checkpoint)).is_same_as(out)
     });
     let out = args.out.as_ref().filter(|_| !is_own);
     let resumption = Resumption::prepare(&args.checkpoint, args.duration.as_deref(), out.is_none());
@@ -40,12 +40,12 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     })?;
     let new_folder = out.map(|path| RunFolder::create(path, args.force)).transpose();
     let new_folder = new_folder.map_err(|error| Failure::from(&error))?;
-    if let Some(time) = resumption.begins_at() {
+    if let Some(time) = resumption.first_time_without_rows() {
         print_error(&format!(
             "note: the files with the rows before the checkpoint are missing; the new files begin at \
              t = {time} s"
         ));
     }
-    let folder = new_folder.clone().unwrap_or_else(|| resumption.own_folder().clone());
+    let folder = new_folder.clone().unwrap_or_else(|| resumption.checkpoint_folder().clone());
     execute(&folder, |watch| resumption.run(new_folder.as_ref(), watch))
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 use indicatif::ProgressBar;
-use tumble_io::run::{Finished, Progress, RunError, RunFolder};
+use tumble_io::run::{FinishedRun, Progress, RunError, RunFolder};
 use tumble_io::scene::{LoadOptions, Loaded};
 
 use crate::console::progress_bar;
@@ -56,7 +56,7 @@ fn load(args: &RunArgs) -> Result<Loaded, Failure> {
 /// Executes a run with a progress bar until it ends or Ctrl-C is pressed, and prints the report.
 pub fn execute(
     folder: &RunFolder,
-    run: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<Finished, RunError>,
+    run: impl FnOnce(&mut dyn FnMut(Progress) -> bool) -> Result<FinishedRun, RunError>,
 ) -> Result<(), Failure> {
     let stop = stop_flag();
     let bar = progress_bar();

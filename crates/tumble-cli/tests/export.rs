@@ -93,7 +93,7 @@ fn folders_without_a_run_are_rejected() {
         assert_eq!((outcome.stdout.as_str(), dir.path("a.csv").exists()), ("", false));
     };
     rejected("nowhere", "nowhere cannot be read");
-    rejected("s.toml", "s.toml is no folder");
+    rejected("s.toml", "s.toml is not a folder");
     rejected("empty", "empty holds no run");
     let header = dir.read("r/trajectory.csv").lines().next().unwrap().to_owned() + "\n";
     for (file, text, part) in [

@@ -1,4 +1,4 @@
-//! Scenes, meshes, recordings, plots and pictures for [`tumble`].
+//! Scene files, meshes, runs, plots, pictures and exports for [`tumble`].
 
 mod appearance;
 pub mod checkpoint;

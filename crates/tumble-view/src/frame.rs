@@ -2,14 +2,14 @@
 
 use tumble::World;
 use tumble_io::page::{BodyFrame, encode_frame};
-use tumble_io::run::ledger_row;
+use tumble_io::run::energy_row;
 
 use crate::Session;
 
 /// The session's present state as a binary record, in the format of the frames of `motion.html`.
 pub fn record(session: &Session) -> Vec<u8> {
     let world = session.world();
-    let row = ledger_row(world.time(), &world.energy(), session.reference_energy());
+    let row = energy_row(world.time(), &world.energy(), session.reference_energy());
     let mut record = Vec::new();
     encode_frame(&mut record, world.state().step, &row, BodyFrame::all(world));
     record

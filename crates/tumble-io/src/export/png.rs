@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::{ExportError, Exported, Job, Watch, tell};
 use crate::picture::{Frame, Pose, Studio, encode_png};
-use crate::run::in_studio;
+use crate::run::with_studio;
 
 pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
     let options = &job.export.options;
@@ -34,5 +34,5 @@ pub(super) fn drawn<T>(job: &Job, size: (u32, u32), draw: impl FnOnce(&Studio) -
         .map(|frame| Frame { time: frame.time, poses: frame.poses.iter().map(pose).collect() })
         .collect();
     let view = (size, job.export.options.view);
-    in_studio((&job.replay.scene, &job.replay.world), &frames, view, draw)
+    with_studio((&job.replay.scene, &job.replay.world), &frames, view, draw)
 }

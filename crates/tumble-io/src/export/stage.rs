@@ -9,7 +9,7 @@ use super::{ExportError, Job};
 use crate::appearance::{KINEMATIC_COLOUR, is_kinematic, surface_of};
 use crate::picture::{Boundary, colour, corner_normals};
 use crate::replay::{Replay, ReplayFrame};
-use crate::run::boundary;
+use crate::run::boundaries;
 
 /// All that does not move by itself.
 pub(super) struct Stage {
@@ -49,7 +49,7 @@ impl Stage {
         let form_of = form_of.collect();
         let forms: Vec<Form> = shown.iter().map(|body| Form::new(body)).collect();
         let bounds = Bounds::of(job.replay, job.chosen.span);
-        let walls = boundary(&job.replay.scene);
+        let walls = boundaries(&job.replay.scene);
         let walls: Vec<[DVec3; 4]> = walls.iter().flat_map(|part| pieces(part, &bounds)).collect();
         let points = forms.iter().flat_map(|form| &form.points).chain(walls.iter().flatten());
         let is_held = |point: &DVec3| point.as_vec3().is_finite();

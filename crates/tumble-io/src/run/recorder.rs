@@ -1,60 +1,155 @@
-//! What a run remembers for its pictures: few enough frames to keep, however long it is.
+//! Records the frames and checkpoints of a run, and draws its pictures at the end.
 
-use crate::picture::Frame;
-use crate::plot::EnergyRow;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::time::{Duration, Instant};
 
-/// Frames and ledger rows, thinned out by half whenever they become too many.
-#[derive(Debug)]
-pub struct Recorder {
-    frames: Vec<Frame>,
-    rows: Vec<EnergyRow>,
-    most: usize,
-    stride: u64,
-    seen: u64,
-    last: Option<(Frame, EnergyRow)>,
+use tumble::{State, World};
+
+use super::energy_ledger::{energy_header, energy_row};
+use super::error::RunError;
+use super::folder::{
+    CHECKPOINT_FILE, CONTACTS_FILE, ENERGY_FILE, ENERGY_PLOT_FILE, MOTION_PAGE_FILE,
+    MOTION_PICTURE_FILE, RunFolder, TRAJECTORY_FILE,
+};
+use super::frame_buffers::{FrameBuffers, picture_frame};
+use super::picture_input::motion_picture;
+use super::recorded_rows::RecordedRows;
+use super::run_writer::{CsvFiles, RunFrame, RunWriter};
+use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
+use crate::checkpoint;
+use crate::page::{self, BodyFrame};
+use crate::plot::{EnergyRow, energy_svg};
+use crate::scene::Scene;
+
+/// Least wall-clock time between two checkpoints. Writing them takes at most a tenth of all time.
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(10);
+
+/// Records a run into its folder: CSV rows while it runs, checkpoints, pictures at the end.
+pub(super) struct Recorder<'a> {
+    folder: &'a RunFolder,
+    writer: RunWriter,
+    energy_start: f64,
+    scene_toml: String,
+    next_checkpoint: Instant,
 }
 
-impl Recorder {
-    /// For a world of `body_count` bodies.
-    pub fn new(body_count: usize) -> Self {
-        // about a million poses in all: some tens of megabytes
-        let most = (1_000_000 / body_count.max(1)).clamp(16, 4096);
-        Self { frames: Vec::new(), rows: Vec::new(), most, stride: 1, seen: 0, last: None }
+impl<'a> Recorder<'a> {
+    /// Starts new files that hold only their headers. `energy_start` is the energy at t = 0 (J).
+    pub fn start(
+        folder: &'a RunFolder,
+        scene: &Scene,
+        world: &World,
+        energy_start: f64,
+    ) -> Result<Self, RunError> {
+        let create = |name, header| {
+            let mut file = folder.create_file(name)?;
+            writeln!(file, "{header}").map_err(|e| write_error(folder, name, e))?;
+            Ok(file)
+        };
+        let files = CsvFiles {
+            trajectory: create(TRAJECTORY_FILE, TRAJECTORY_HEADER)?,
+            energy: create(ENERGY_FILE, energy_header(scene.does_work()))?,
+            contacts: create(CONTACTS_FILE, CONTACTS_HEADER)?,
+            has_work: scene.does_work(),
+        };
+        let frames = FrameBuffers::new(world.body_count());
+        let writer = RunWriter::start(folder, files, frames, body_names(world));
+        Ok(Self::new(folder, writer, scene, energy_start))
     }
 
-    /// Remembers a frame, as it was recorded.
-    pub fn record_frame(&mut self, frame: Frame, row: EnergyRow) {
-        if self.seen.is_multiple_of(self.stride) {
-            if self.frames.len() == self.most {
-                self.stride *= 2;
-                keep_even(&mut self.frames);
-                keep_even(&mut self.rows);
+    /// Continues after the rows already recorded in `source`, in that folder or in another one.
+    pub fn resume(
+        source: &RunFolder,
+        folder: &'a RunFolder,
+        recorded: RecordedRows,
+        (scene, world): (&Scene, &World),
+        energy_start: f64,
+    ) -> Result<Self, RunError> {
+        let RecordedRows { trajectory_bytes, energy_bytes, contacts_bytes, frames } = recorded;
+        let open = |name, length| {
+            if source.is_same_as(folder.path()) {
+                return folder.append_to_file(name, length);
             }
-            if self.seen.is_multiple_of(self.stride) {
-                self.frames.push(frame.clone());
-                self.rows.push(row);
-            }
-        }
-        self.last = Some((frame, row));
-        self.seen += 1;
+            let rows = File::open(source.file_path(name)).map(|file| file.take(length));
+            let mut copy = folder.create_file(name)?;
+            rows.and_then(|mut rows| io::copy(&mut rows, &mut copy))
+                .map_err(|e| write_error(folder, name, e))?;
+            Ok(copy)
+        };
+        let files = CsvFiles {
+            trajectory: open(TRAJECTORY_FILE, trajectory_bytes)?,
+            energy: open(ENERGY_FILE, energy_bytes)?,
+            contacts: open(CONTACTS_FILE, contacts_bytes)?,
+            has_work: scene.does_work(),
+        };
+        let writer = RunWriter::start(folder, files, frames, body_names(world));
+        Ok(Self::new(folder, writer, scene, energy_start))
     }
 
-    /// Everything that is remembered, the last moment included.
-    pub fn finish(mut self) -> (Vec<Frame>, Vec<EnergyRow>) {
-        if let Some((frame, row)) = self.last
-            && self.frames.last() != Some(&frame)
-        {
-            self.frames.push(frame);
-            self.rows.push(row);
+    fn new(folder: &'a RunFolder, writer: RunWriter, scene: &Scene, energy_start: f64) -> Self {
+        let (scene_toml, next_checkpoint) = (scene.to_toml(), Instant::now() + CHECKPOINT_INTERVAL);
+        Self { folder, writer, energy_start, scene_toml, next_checkpoint }
+    }
+
+    /// Records the current state of the world as a frame.
+    pub fn record_frame(&mut self, world: &World) -> Result<(), RunError> {
+        let row = self.energy_row(world)?;
+        let bodies = BodyFrame::all(world).collect();
+        self.writer.write(RunFrame { step: world.state().step, row, bodies })
+    }
+
+    /// The current row of the energy ledger; an error if the energy is not finite.
+    fn energy_row(&self, world: &World) -> Result<EnergyRow, RunError> {
+        let row = energy_row(world.time(), &world.energy(), self.energy_start);
+        let is_finite = row.total.is_finite() && row.residual.is_finite();
+        if is_finite { Ok(row) } else { Err(RunError::NonFiniteEnergy(world.time())) }
+    }
+
+    /// Whether a checkpoint is due by the wall clock.
+    pub fn is_checkpoint_due(&self) -> bool {
+        Instant::now() >= self.next_checkpoint
+    }
+
+    /// Writes a checkpoint, after syncing the rows of all frames so far to the disk.
+    pub fn write_checkpoint(&mut self, scene: &Scene, state: &State) -> Result<(), RunError> {
+        let begin = Instant::now();
+        self.writer.sync()?;
+        let name_and_toml = (scene.name.as_str(), self.scene_toml.as_str());
+        let bytes = checkpoint::encode(name_and_toml, (scene.force, self.energy_start), state);
+        self.folder.write_file(CHECKPOINT_FILE, &bytes)?;
+        self.next_checkpoint = Instant::now() + CHECKPOINT_INTERVAL.max(9 * begin.elapsed());
+        Ok(())
+    }
+
+    /// Writes the plot, the picture and the page; returns the energy ledger of the last state.
+    pub fn finish(self, scene: &Scene, world: &World) -> Result<EnergyRow, RunError> {
+        let row = self.energy_row(world)?;
+        let FrameBuffers { mut pictures, mut page } = self.writer.finish()?;
+        // the last state need not be a frame, and a run resumed without its rows may have no frame
+        let bodies: Vec<_> = BodyFrame::all(world).collect();
+        pictures.record(picture_frame(row.time, &bodies), row);
+        if page.is_empty() {
+            page.record(world.state().step, &row, bodies.into_iter());
         }
-        (self.frames, self.rows)
+        let (frames, rows) = pictures.finish();
+        let draw_error = |name, error| RunError::Draw(self.folder.file_path(name), error);
+        let svg = energy_svg(&format!("{}: energy", scene.name), &rows)
+            .map_err(|error| draw_error(ENERGY_PLOT_FILE, error.to_string()))?;
+        self.folder.write_file(ENERGY_PLOT_FILE, svg.as_bytes())?;
+        let png = motion_picture(scene, world, &frames)
+            .map_err(|error| draw_error(MOTION_PICTURE_FILE, error.to_string()))?;
+        self.folder.write_file(MOTION_PICTURE_FILE, &png)?;
+        let html = page::motion_html(&page::Head::of(scene, world), &page);
+        self.folder.write_file(MOTION_PAGE_FILE, html.as_bytes())?;
+        Ok(row)
     }
 }
 
-fn keep_even<T>(items: &mut Vec<T>) {
-    let mut index = 0;
-    items.retain(|_| {
-        index += 1;
-        index % 2 == 1
-    });
+fn body_names(world: &World) -> Vec<String> {
+    world.bodies().map(|body| body.name().to_owned()).collect()
+}
+
+fn write_error(folder: &RunFolder, name: &str, error: io::Error) -> RunError {
+    RunError::Write(folder.file_path(name), error)
 }

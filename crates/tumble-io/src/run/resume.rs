@@ -1,169 +1,117 @@
-//! Going on from a checkpoint, to the bits of a run that never stopped.
+//! Resumes a run from a checkpoint. The results are bitwise those of an uninterrupted run.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use tumble::StateError;
+use super::error::RunError;
+use super::folder::{CHECKPOINT_FILE, FILES, RunFolder, SCENE_FILE, SUMMARY_FILE};
+use super::progress::{FinishedRun, Progress};
+use super::recorded_rows::RecordedRows;
+use super::recorder::Recorder;
+use super::resume_error::ResumeError;
+use super::run_loop::RunLoop;
+use crate::checkpoint::{Checkpoint, read_checkpoint};
+use crate::scene::{LoadOptions, Loaded, Source, load_text};
 
-use super::folder::{CHECKPOINT, FILES, RunError, RunFolder, SCENE};
-use super::history::History;
-use super::recording::Recording;
-use super::rows::RowError;
-use super::runner::{Finished, Progress, Run};
-use crate::checkpoint::{Checkpoint, CheckpointError, read_checkpoint};
-use crate::scene::{LoadOptions, Loaded, SceneError, Source, load_text};
-
-/// Why a run cannot go on from a checkpoint. Nothing has been written then.
-#[derive(Debug)]
-pub enum ResumeError {
-    /// The file is no checkpoint that can be used.
-    Checkpoint(PathBuf, CheckpointError),
-    /// The scene of the checkpoint cannot be run any more, or not for that long.
-    Scene(SceneError),
-    /// The state is not one of that scene.
-    State(PathBuf, StateError),
-    /// The run has come that far already.
-    Done {
-        /// Where the checkpoint stands (s).
-        time: f64,
-        /// How far it is to go (s).
-        duration: f64,
-    },
-    /// The folder holds files of something else.
-    OtherRun(PathBuf),
-    /// The rows of a file are not those that the run wrote.
-    Rows(RowError),
-}
-
-impl std::fmt::Display for ResumeError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Checkpoint(path, error) => write!(f, "{} {error}", path.display()),
-            Self::Scene(error) => error.fmt(f),
-            Self::State(path, error) => {
-                write!(f, "{} is no checkpoint of a run: {error}", path.display())
-            }
-            Self::Done { time, duration } => write!(
-                f,
-                "there is nothing left to do: the checkpoint is at t = {time} s, the run goes to \
-                 {duration} s; say a later time with --duration"
-            ),
-            Self::OtherRun(path) => write!(
-                f,
-                "{} holds files that are not of the checkpoint's run; \
-                 name another folder with --out",
-                path.display()
-            ),
-            Self::Rows(error) => write!(
-                f,
-                "{} {}, so the run cannot go on after its rows; move the checkpoint to a \
-                 folder of its own to go on without them",
-                error.path.display(),
-                error.what
-            ),
-        }
-    }
-}
-
-impl std::error::Error for ResumeError {}
-
-impl From<RowError> for ResumeError {
-    fn from(error: RowError) -> Self {
-        Self::Rows(error)
-    }
-}
-
-/// A run that is ready to go on.
+/// A run that is ready to be resumed.
 #[derive(Debug)]
 pub struct Resumption {
     loaded: Loaded,
     energy_start: f64,
-    own: RunFolder,
-    history: Option<History>,
+    checkpoint_folder: RunFolder,
+    recorded: Option<RecordedRows>,
 }
 
 impl Resumption {
-    /// Reads the checkpoint at `path` (or in the folder `path`), its scene and meshes, and the rows
-    /// beside it. `duration` is the simulated time to reach (s), as the user wrote it, if it is to be
-    /// another than the scene's; `in_place` says that the run is to go on in its own folder.
+    /// Reads a checkpoint, its scene and meshes, and the rows in its folder.
+    ///
+    /// `path` is the checkpoint or its folder. `duration`, if given, replaces the duration of the
+    /// scene (s); it is the text that the user wrote. `in_place` states that the run continues in
+    /// the folder of the checkpoint.
     ///
     /// # Errors
-    /// [`ResumeError`]; nothing is changed by then.
+    /// [`ResumeError`]. No file has been changed.
     pub fn prepare(
         path: &Path,
         duration: Option<&str>,
         in_place: bool,
     ) -> Result<Self, ResumeError> {
-        let path = if path.is_dir() { path.join(CHECKPOINT) } else { path.to_owned() };
+        let path = if path.is_dir() { path.join(CHECKPOINT_FILE) } else { path.to_owned() };
         let checkpoint =
             read_checkpoint(&path).map_err(|error| ResumeError::Checkpoint(path.clone(), error))?;
-        let own = RunFolder::existing(path.parent().unwrap_or(Path::new(".")));
-        let scene_beside = std::fs::read_to_string(own.file(SCENE)).unwrap_or_default();
-        let is_own = same_but_duration(&scene_beside, &checkpoint.scene);
-        let is_there = |name: &str| own.file(name).symlink_metadata().is_ok();
-        let foreign = FILES.iter().any(|&name| name != CHECKPOINT && is_there(name));
-        if in_place && foreign && !is_own {
-            return Err(ResumeError::OtherRun(own.path().to_owned()));
+        let folder = RunFolder::from_path(path.parent().unwrap_or(Path::new(".")));
+        let scene_beside =
+            std::fs::read_to_string(folder.file_path(SCENE_FILE)).unwrap_or_default();
+        let is_same_run = are_equal_but_duration(&scene_beside, &checkpoint.scene);
+        let exists = |name: &str| folder.file_path(name).symlink_metadata().is_ok();
+        let has_run_files = FILES.iter().any(|&name| name != CHECKPOINT_FILE && exists(name));
+        if in_place && has_run_files && !is_same_run {
+            return Err(ResumeError::OtherRun(folder.path().to_owned()));
         }
         let energy_start = checkpoint.energy_start;
         let loaded = load(checkpoint, &path, duration)?;
         let (state, scene) = (loaded.world.state(), &loaded.scene);
-        // a run that stopped short of its pictures may still finish them
-        let unfinished = in_place && is_own && !is_there("summary.json");
+        // a run at its end may still lack its pictures
+        let unfinished = in_place && is_same_run && !exists(SUMMARY_FILE);
         let steps = scene.step_count();
         if steps < state.step || (steps == state.step && !unfinished) {
             return Err(ResumeError::Done { time: state.time, duration: scene.duration });
         }
-        let history = if is_own { History::read(&own, scene, &loaded.world)? } else { None };
-        Ok(Self { loaded, energy_start, own, history })
+        let recorded =
+            if is_same_run { RecordedRows::read(&folder, scene, &loaded.world)? } else { None };
+        Ok(Self { loaded, energy_start, checkpoint_folder: folder, recorded })
     }
 
-    /// The checkpoint's own folder.
-    pub fn own_folder(&self) -> &RunFolder {
-        &self.own
+    /// The folder of the checkpoint.
+    pub fn checkpoint_folder(&self) -> &RunFolder {
+        &self.checkpoint_folder
     }
 
-    /// The simulated time at which the new rows begin, when those before are not there to be kept (s).
-    pub fn begins_at(&self) -> Option<f64> {
-        self.history.is_none().then(|| self.loaded.world.time())
+    /// Simulated time at which the new rows begin (s), if the rows before it are missing.
+    pub fn first_time_without_rows(&self) -> Option<f64> {
+        self.recorded.is_none().then(|| self.loaded.world.time())
     }
 
-    /// Runs on to the end, in a new folder or in the checkpoint's own. See [`run`](super::run).
+    /// Runs to the end, in the folder `out` or, without it, in the folder of the checkpoint.
+    ///
+    /// `watch` is that of [`run`](crate::run::run).
     ///
     /// # Errors
-    /// [`RunError`], as for any run.
+    /// [`RunError`] when a time step fails or a file cannot be written.
     pub fn run(
         self,
         out: Option<&RunFolder>,
         watch: &mut dyn FnMut(Progress) -> bool,
-    ) -> Result<Finished, RunError> {
-        let Self { loaded: Loaded { scene, world }, energy_start, own, history } = self;
-        let folder = out.unwrap_or(&own);
+    ) -> Result<FinishedRun, RunError> {
+        let Self { loaded: Loaded { scene, world }, energy_start, checkpoint_folder, recorded } =
+            self;
+        let folder = out.unwrap_or(&checkpoint_folder);
         match out {
-            Some(out) => out.claim(&scene)?,
-            None => own.unfinish()?,
+            Some(out) => out.write_scene(&scene)?,
+            None => checkpoint_folder.remove_summary()?,
         }
-        let mut recording = match history {
-            Some(history) => {
-                Recording::go_on(&own, folder, history, (&scene, &world), energy_start)?
+        let mut recorder = match recorded {
+            Some(recorded) => {
+                let model = (&scene, &world);
+                Recorder::resume(&checkpoint_folder, folder, recorded, model, energy_start)?
             }
             None => {
-                let mut recording = Recording::start(folder, &scene, &world, energy_start)?;
+                let mut recorder = Recorder::start(folder, &scene, &world, energy_start)?;
                 if scene.is_frame(world.state().step) {
-                    recording.frame(&world)?;
+                    recorder.record_frame(&world)?;
                 }
-                recording
+                recorder
             }
         };
-        // stopped at any moment from here on, the run can be resumed as it is meant now
-        recording.checkpoint(&scene, world.state())?;
+        // from here on the run can be resumed with the new duration
+        recorder.write_checkpoint(&scene, world.state())?;
         if out.is_none() {
-            folder.write(SCENE, scene.to_toml().as_bytes())?;
+            folder.write_file(SCENE_FILE, scene.to_toml().as_bytes())?;
         }
-        Run::new(scene, world, recording).finish(folder, watch)
+        RunLoop::new(scene, world, recorder).finish(folder, watch)
     }
 }
 
-/// The world at the checkpoint.
+/// Loads the scene of the checkpoint and restores its state.
 fn load(
     checkpoint: Checkpoint,
     path: &Path,
@@ -182,8 +130,8 @@ fn load(
     Ok(loaded)
 }
 
-/// Whether both texts are one scene, run for different times perhaps.
-fn same_but_duration(a: &str, b: &str) -> bool {
+/// Whether both texts are the same scene, apart from its duration.
+fn are_equal_but_duration(a: &str, b: &str) -> bool {
     let rest = |line: &&str| !line.starts_with("duration = ");
     !a.is_empty() && a.lines().filter(rest).eq(b.lines().filter(rest))
 }

@@ -1,51 +1,93 @@
 //! `summary.json`: the run in a few numbers.
 
-use serde::Serialize;
+use std::time::Duration;
 
-/// The run in a few numbers.
+use serde::Serialize;
+use tumble::{World, critical_dt};
+
+use crate::plot::EnergyRow;
+use crate::scene::Scene;
+
+/// The contents of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// Version of the program.
     pub version: String,
     /// Name of the scene.
     pub scene: String,
-    /// How a step advanced time.
+    /// Name of the integrator.
     pub integrator: String,
     /// Time step (s).
     pub dt: f64,
-    /// Simulated time that was asked for (s).
+    /// Requested simulated time (s).
     pub duration: f64,
-    /// Simulated time that was reached (s).
+    /// Simulated time reached (s).
     pub time: f64,
-    /// Whether the run was stopped before its end.
+    /// Whether the run was stopped before its duration.
     pub interrupted: bool,
     /// Steps taken.
     pub steps: u64,
-    /// How many bodies.
+    /// Number of bodies.
     pub bodies: usize,
-    /// How many particles, over all bodies.
+    /// Number of particles of all bodies.
     pub particles: u64,
-    /// Time spent in stepping alone (s), since the run was last resumed.
+    /// Wall-clock time of the time steps alone, since the run was last resumed (s).
     pub wall_seconds: f64,
-    /// Steps of that time, a second.
+    /// Steps per second of `wall_seconds`.
     pub steps_per_second: f64,
     /// Total energy at the start (J).
     pub energy_start: f64,
-    /// Total energy at the end, losses included (J).
+    /// Total energy at the end, including dissipated energy (J).
     pub energy_end: f64,
-    /// Their difference: the integrator's error (J).
+    /// End minus start: the error of the integrator (J).
     pub energy_residual: f64,
-    /// The longest step with which contact is stable (s); absent where nothing can touch.
+    /// Largest time step at which contacts are stable (s); absent if no contact is possible.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_dt: Option<f64>,
-    /// How often contact forces kicked a body.
+    /// Number of evaluations of the contact forces of a body.
     pub force_evaluations: u64,
-    /// Deepest contact of the whole run (m): of all evaluations of forces, and at the end.
+    /// Largest penetration depth of the run (m), over all force evaluations and the last state.
     pub max_depth: f64,
-    /// Deepest contact between two bodies at the end (m).
+    /// Largest penetration depth between two bodies at the end (m).
     pub body_depth_end: f64,
-    /// Deepest contact with a wall at the end (m).
+    /// Largest penetration depth into a wall at the end (m).
     pub wall_depth_end: f64,
-    /// Hash of the last state.
+    /// Hash of the last state, see [`State::hash`](tumble::State::hash).
     pub state_hash: String,
+}
+
+impl Summary {
+    /// Summarises a run at its end. `steps_here` steps took `stepping_time` since it was last resumed.
+    pub(super) fn new(
+        scene: &Scene,
+        world: &World,
+        (steps_here, stepping_time): (u64, Duration),
+        energy: &EnergyRow,
+    ) -> Self {
+        let (steps, depths) = (world.state().step, world.penetration_depths());
+        let seconds = stepping_time.as_secs_f64();
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: scene.name.clone(),
+            integrator: scene.integrator.name().to_owned(),
+            dt: scene.dt,
+            duration: scene.duration,
+            time: world.time(),
+            interrupted: steps < scene.step_count(),
+            steps,
+            bodies: world.body_count(),
+            particles: world.bodies().map(|body| body.particle_count() as u64).sum(),
+            wall_seconds: seconds,
+            steps_per_second: if seconds > 0.0 { steps_here as f64 / seconds } else { 0.0 },
+            energy_start: energy.total - energy.residual,
+            energy_end: energy.total,
+            energy_residual: energy.residual,
+            critical_dt: critical_dt(world.model()).map(|critical| critical.dt),
+            force_evaluations: world.state().totals.evaluations,
+            max_depth: world.state().totals.max_depth.max(depths.bodies).max(depths.walls),
+            body_depth_end: depths.bodies,
+            wall_depth_end: depths.walls,
+            state_hash: world.state().hash(),
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! `trajectory.csv`: one row a body a frame; `contacts.csv`: one for each body in contact.
+//! `trajectory.csv`, one row per body and frame; `contacts.csv`, one row per frame and body in contact.
 
 use std::io::{self, Write};
 
@@ -6,13 +6,10 @@ use tumble::Wrench;
 
 use crate::page::BodyFrame;
 
-/// The columns.
+/// Columns of `trajectory.csv`.
 pub const TRAJECTORY_HEADER: &str = "time,body,px,py,pz,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz,lx,ly,lz";
 
-/// Writes one row for each body at a time (s). Numbers have the shortest form that reads back to the same double.
-///
-/// # Errors
-/// Those of `out`.
+/// Writes the rows of one frame at `time` (s) to `trajectory.csv`.
 pub(super) fn write_frame(
     out: &mut impl Write,
     time: f64,
@@ -29,14 +26,13 @@ pub(super) fn write_frame(
     Ok(())
 }
 
-/// The columns of `contacts.csv`.
+/// Columns of `contacts.csv`.
 pub const CONTACTS_HEADER: &str = "time,body,fx,fy,fz,tx,ty,tz";
 
-/// Writes one row for each body that touches a wall: the force of all its contacts (N) and their
-/// torque about its centre of mass (N·m), world axes, as they acted in the latest step.
+/// Writes the rows of one frame at `time` (s) to `contacts.csv`, one for each body in contact.
 ///
-/// # Errors
-/// Those of `out`.
+/// A row holds the total force (N) of all contacts of the body, with walls and with other bodies,
+/// and their torque about its centre of mass (N·m), in world axes, as applied in the latest step.
 pub(super) fn write_contacts(
     out: &mut impl Write,
     time: f64,
@@ -52,7 +48,9 @@ pub(super) fn write_contacts(
     Ok(())
 }
 
-/// Writes a row: the time (s), the body if it is of one, and numbers.
+/// Writes a row: the time (s), the name of the body if given, and the numbers.
+///
+/// Numbers have the shortest decimal form that parses to the same double.
 pub(crate) fn write_row(
     out: &mut impl Write,
     (time, body): (f64, Option<&str>),

@@ -1,4 +1,4 @@
-//! `energy.csv`: where every joule is, one row a frame.
+//! `energy.csv`: the energy ledger, one row per frame.
 
 use std::io::{self, Write};
 
@@ -7,21 +7,23 @@ use tumble::Energy;
 use super::trajectory::write_row;
 use crate::plot::EnergyRow;
 
-/// The columns of a scene in which nothing does work.
-pub const LEDGER_HEADER: &str =
+/// Columns of `energy.csv` for a scene in which nothing does work.
+pub const ENERGY_HEADER: &str =
     "time,kinetic,gravitational,elastic,drag,dashpot,slip,total,residual";
 
-/// The columns of a scene with bodies that do work.
+/// Columns of `energy.csv` for a scene in which a body or belt may do work.
 const HEADER_WITH_WORK: &str =
     "time,kinetic,gravitational,elastic,drag,dashpot,slip,total,residual,work";
 
-/// The columns; `work` only where bodies do some (see [`Scene::does_work`](crate::scene::Scene::does_work)).
-pub fn ledger_header(has_work: bool) -> &'static str {
-    if has_work { HEADER_WITH_WORK } else { LEDGER_HEADER }
+/// Columns of `energy.csv`.
+///
+/// The column `work` exists only if [`Scene::does_work`](crate::scene::Scene::does_work).
+pub fn energy_header(has_work: bool) -> &'static str {
+    if has_work { HEADER_WITH_WORK } else { ENERGY_HEADER }
 }
 
-/// The row of one frame; the residual is what the total has moved away from `start` (J).
-pub fn ledger_row(time: f64, energy: &Energy, start: f64) -> EnergyRow {
+/// The ledger row at `time` (s). The residual is the total minus `energy_start` (J).
+pub fn energy_row(time: f64, energy: &Energy, energy_start: f64) -> EnergyRow {
     EnergyRow {
         time,
         kinetic: energy.kinetic,
@@ -32,12 +34,12 @@ pub fn ledger_row(time: f64, energy: &Energy, start: f64) -> EnergyRow {
         slip: energy.slip,
         work: energy.work,
         total: energy.total(),
-        residual: energy.total() - start,
+        residual: energy.total() - energy_start,
     }
 }
 
-/// Writes the row, numbers in the shortest form that reads back to the same double.
-pub(super) fn write_ledger(
+/// Writes a ledger row.
+pub(super) fn write_energy(
     out: &mut impl Write,
     row: &EnergyRow,
     has_work: bool,

@@ -1,4 +1,4 @@
-//! From a scene and its frames to what draws them.
+//! Converts a scene, its world and its frames into the input of the picture module.
 
 use std::borrow::Cow;
 
@@ -8,52 +8,52 @@ use crate::appearance::{is_kinematic, surface_of};
 use crate::picture::{self, Boundary, MotionPicture, PictureBody, Studio, View, encode_png};
 use crate::scene::Scene;
 
-/// The motion in one picture, as PNG.
+/// Draws `motion.png`; returns the bytes of the PNG file.
 pub(super) fn motion_picture(
     scene: &Scene,
     world: &World,
     frames: &[picture::Frame],
 ) -> Result<Vec<u8>, picture::PictureError> {
     let view = (picture::DEFAULT_SIZE, None);
-    in_studio((scene, world), frames, view, |studio| encode_png(&studio.motion()))
+    with_studio((scene, world), frames, view, |studio| encode_png(&studio.motion()))
 }
 
-/// The walls of a scene.
-pub(crate) fn boundary(scene: &Scene) -> Vec<Boundary> {
-    let of_box = scene.box_walls.iter().map(|own| Boundary::Box {
-        min: own.walls.min,
-        max: own.walls.max,
-        orientation: own.walls.orientation,
-        open: own.walls.open,
+/// The walls of a scene, as boundaries of the picture.
+pub(crate) fn boundaries(scene: &Scene) -> Vec<Boundary> {
+    let boxes = scene.box_walls.iter().map(|wall_box| Boundary::Box {
+        min: wall_box.walls.min,
+        max: wall_box.walls.max,
+        orientation: wall_box.walls.orientation,
+        open: wall_box.walls.open,
     });
-    let single = scene
+    let planes = scene
         .walls
         .iter()
         .map(|wall| Boundary::Plane { normal: wall.plane.normal, offset: wall.plane.offset });
-    of_box.chain(single).collect()
+    boxes.chain(planes).collect()
 }
 
-/// Draws with a studio for pictures of this size (pixels) and view.
-pub(crate) fn in_studio<T>(
+/// Calls `draw` with a studio for pictures of this size (pixels) and view.
+pub(crate) fn with_studio<T>(
     (scene, world): (&Scene, &World),
     frames: &[picture::Frame],
     (size, view): ((u32, u32), Option<View>),
     draw: impl FnOnce(&Studio) -> T,
 ) -> T {
-    // bodies without a surface are drawn by their particles
-    let looks: Vec<(Cow<Mesh>, Vec<DVec3>)> = world
+    // a body without a surface is drawn as its particles
+    let geometry: Vec<(Cow<Mesh>, Vec<DVec3>)> = world
         .bodies()
         .map(|body| {
             let surface = surface_of(body.model());
-            let bare = surface.triangles.is_empty();
+            let has_no_surface = surface.triangles.is_empty();
             let particles = body.model().shape.particles();
-            let points = if bare { particles.iter().collect() } else { Vec::new() };
+            let points = if has_no_surface { particles.iter().collect() } else { Vec::new() };
             (surface, points)
         })
         .collect();
     let bodies: Vec<_> = world
         .bodies()
-        .zip(&looks)
+        .zip(&geometry)
         .map(|(body, (surface, points))| {
             let is_kinematic = is_kinematic(body.model());
             let vertices = if points.is_empty() { &surface.vertices } else { points };
@@ -64,7 +64,7 @@ pub(crate) fn in_studio<T>(
         title: &scene.name,
         up: -scene.gravity,
         bodies: &bodies,
-        boundary: &boundary(scene),
+        boundary: &boundaries(scene),
         frames,
         size,
     };

@@ -1,0 +1,193 @@
+//! Writes the rows of a run on a thread of its own, so that the time steps do not wait for text
+//! formatting and disks.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::JoinHandle;
+
+use super::energy_ledger::write_energy;
+use super::error::RunError;
+use super::folder::{CONTACTS_FILE, ENERGY_FILE, RunFolder, TRAJECTORY_FILE};
+use super::frame_buffers::FrameBuffers;
+use super::trajectory::{write_contacts, write_frame};
+use crate::page::BodyFrame;
+use crate::plot::EnergyRow;
+
+/// Frames are sent in batches of about so many bodies: waking a thread costs more than writing a
+/// frame of one body.
+const BATCH_BODIES: usize = 256;
+/// Batches that may wait in the channel. When the disk is slower than that, the time steps wait.
+const CHANNEL_CAPACITY: usize = 8;
+
+/// The open CSV files of a run.
+pub(super) struct CsvFiles {
+    pub trajectory: BufWriter<File>,
+    pub energy: BufWriter<File>,
+    pub contacts: BufWriter<File>,
+    /// Whether `energy.csv` has the column `work`.
+    pub has_work: bool,
+}
+
+/// One frame of a run.
+pub(super) struct RunFrame {
+    pub step: u64,
+    pub row: EnergyRow,
+    pub bodies: Vec<BodyFrame>,
+}
+
+enum Request {
+    Write(Vec<RunFrame>),
+    /// Sync all files to the disk, then reply.
+    Sync(SyncSender<()>),
+}
+
+/// Handle of the writer thread.
+pub(super) struct RunWriter {
+    folder: RunFolder,
+    requests: Option<SyncSender<Request>>,
+    batch: Vec<RunFrame>,
+    thread: Option<JoinHandle<Result<FrameBuffers, RunError>>>,
+}
+
+impl RunWriter {
+    /// Starts the thread. `names` are the names of the bodies, in order.
+    pub fn start(
+        folder: &RunFolder,
+        files: CsvFiles,
+        frames: FrameBuffers,
+        names: Vec<String>,
+    ) -> Self {
+        let (requests, received) = sync_channel(CHANNEL_CAPACITY);
+        let worker = Worker { folder: folder.clone(), files, frames, names };
+        let thread = Some(std::thread::spawn(move || worker.run(&received)));
+        Self { folder: folder.clone(), requests: Some(requests), batch: Vec::new(), thread }
+    }
+
+    /// Queues a frame.
+    ///
+    /// # Errors
+    /// [`RunError::Write`] when an earlier frame could not be written.
+    pub fn write(&mut self, frame: RunFrame) -> Result<(), RunError> {
+        let bodies = frame.bodies.len().max(1);
+        self.batch.push(frame);
+        if self.batch.len() * bodies >= BATCH_BODIES { self.send_batch() } else { Ok(()) }
+    }
+
+    fn send_batch(&mut self) -> Result<(), RunError> {
+        let batch = std::mem::take(&mut self.batch);
+        if batch.is_empty() { Ok(()) } else { self.send(Request::Write(batch)) }
+    }
+
+    /// Waits until all queued frames are on the disk.
+    ///
+    /// # Errors
+    /// [`RunError::Write`] when a file could not be written or synced.
+    pub fn sync(&mut self) -> Result<(), RunError> {
+        self.send_batch()?;
+        let (done, reply) = sync_channel(1);
+        self.send(Request::Sync(done))?;
+        reply.recv().map_err(|_| self.failure())
+    }
+
+    /// Writes all queued frames, ends the thread and returns the frames held in memory.
+    ///
+    /// # Errors
+    /// [`RunError::Write`] when a row could not be written.
+    pub fn finish(mut self) -> Result<FrameBuffers, RunError> {
+        self.send_batch()?;
+        self.join()
+    }
+
+    fn send(&mut self, request: Request) -> Result<(), RunError> {
+        let is_sent = self.requests.as_ref().is_some_and(|requests| requests.send(request).is_ok());
+        if is_sent { Ok(()) } else { Err(self.failure()) }
+    }
+
+    /// The error that ended the thread.
+    fn failure(&mut self) -> RunError {
+        match self.join() {
+            Err(error) => error,
+            Ok(_) => self.stopped(),
+        }
+    }
+
+    fn join(&mut self) -> Result<FrameBuffers, RunError> {
+        self.requests = None;
+        let ended = self.thread.take().map(JoinHandle::join);
+        ended.and_then(Result::ok).unwrap_or_else(|| Err(self.stopped()))
+    }
+
+    fn stopped(&self) -> RunError {
+        let error = io::Error::other("the writer thread has stopped");
+        RunError::Write(self.folder.file_path(TRAJECTORY_FILE), error)
+    }
+}
+
+impl Drop for RunWriter {
+    /// Writes the queued frames even when the run fails.
+    fn drop(&mut self) {
+        // an error was reported before, or the run ends with an error of its own
+        let _ = self.send_batch().and_then(|()| self.join().map(drop));
+    }
+}
+
+/// What the thread owns.
+struct Worker {
+    folder: RunFolder,
+    files: CsvFiles,
+    frames: FrameBuffers,
+    names: Vec<String>,
+}
+
+impl Worker {
+    fn run(mut self, requests: &Receiver<Request>) -> Result<FrameBuffers, RunError> {
+        while let Ok(request) = requests.recv() {
+            match request {
+                Request::Write(frames) => {
+                    frames.into_iter().try_for_each(|frame| self.write(frame))?;
+                }
+                Request::Sync(done) => {
+                    self.sync()?;
+                    // the receiver may be gone
+                    let _ = done.send(());
+                }
+            }
+        }
+        self.for_each_file(|file| file.flush())?;
+        Ok(self.frames)
+    }
+
+    fn write(&mut self, frame: RunFrame) -> Result<(), RunError> {
+        let RunFrame { step, row, bodies } = frame;
+        let CsvFiles { trajectory, energy, contacts, has_work } = &mut self.files;
+        let failed = |name| move |error| (name, error);
+        write_frame(trajectory, row.time, &self.names, &bodies)
+            .map_err(failed(TRAJECTORY_FILE))
+            .and_then(|()| write_energy(energy, &row, *has_work).map_err(failed(ENERGY_FILE)))
+            .and_then(|()| {
+                write_contacts(contacts, row.time, &self.names, &bodies)
+                    .map_err(failed(CONTACTS_FILE))
+            })
+            .map_err(|(name, error)| RunError::Write(self.folder.file_path(name), error))?;
+        self.frames.record(step, &row, bodies);
+        Ok(())
+    }
+
+    fn sync(&mut self) -> Result<(), RunError> {
+        self.for_each_file(|file| file.flush().and_then(|()| file.get_ref().sync_data()))
+    }
+
+    fn for_each_file(
+        &mut self,
+        apply: impl Fn(&mut BufWriter<File>) -> io::Result<()>,
+    ) -> Result<(), RunError> {
+        let CsvFiles { trajectory, energy, contacts, .. } = &mut self.files;
+        let files =
+            [(TRAJECTORY_FILE, trajectory), (ENERGY_FILE, energy), (CONTACTS_FILE, contacts)];
+        for (name, file) in files {
+            apply(file).map_err(|error| RunError::Write(self.folder.file_path(name), error))?;
+        }
+        Ok(())
+    }
+}
