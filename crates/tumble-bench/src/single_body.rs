@@ -1,10 +1,16 @@
-//! Bodies and motions that are timed.
+//! Time per step of one body among walls, compared with the plain loops.
 
 use tumble::{Body, DVec3, Damping, Integrator, Material, Mesh, Shape, WallBox, World};
 
-use crate::{PlainLoop, Style, side_by_side};
+use crate::plain_loop::{LoopStyle, PlainLoop};
+use crate::timing::time_in_turns;
 
-/// Evenly spread points on a sphere of the given radius (m).
+/// Radius of the body (m).
+const RADIUS: f64 = 0.3;
+
+/// `count` evenly distributed points on a sphere of the given radius (m).
+///
+/// The points lie on a Fibonacci spiral.
 pub fn fibonacci_sphere(count: usize, radius: f64) -> Vec<DVec3> {
     let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     (0..count)
@@ -17,23 +23,23 @@ pub fn fibonacci_sphere(count: usize, radius: f64) -> Vec<DVec3> {
         .collect()
 }
 
-/// What the body does while it is timed.
+/// The motion of the body while it is timed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
-    /// It never comes near a wall.
+    /// Free flight far from every wall, without gravity.
     Flight,
-    /// It is thrown and bounces in the arena for three seconds, again and again.
+    /// Bouncing in the arena with drag; restarted every three seconds of simulated time.
     Bouncing,
-    /// It rests on the floor, 5.7 % of its particles in contact.
+    /// At rest on the floor, with 5.7 % of the particles in contact.
     Rest,
-    /// As [`Motion::Rest`], with dashpots.
+    /// As [`Motion::Rest`], with contact dashpots.
     DampedRest,
     /// As [`Motion::DampedRest`], with friction.
     RoughRest,
 }
 
 impl Motion {
-    /// What the table calls it.
+    /// The name in the table of results.
     pub fn name(self) -> &'static str {
         match self {
             Self::Flight => "flight",
@@ -45,17 +51,17 @@ impl Motion {
     }
 }
 
-/// A sphere of `rings` rings of as many vertices each, and two triangles a vertex (m).
+/// A sphere of radius 0.3 m: `rings` rings of `rings` vertices each, and two triangles per vertex.
 pub fn sphere_mesh(rings: u32) -> Mesh {
-    let around = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(rings);
-    let place = |ring: u32, i: u32| {
-        let (y, r) = (0.5 * (around(ring) + around(1) / 2.0)).sin_cos();
-        let (sine, cosine) = around(i).sin_cos();
+    let angle = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(rings);
+    let position = |ring: u32, i: u32| {
+        let (y, r) = (0.5 * (angle(ring) + angle(1) / 2.0)).sin_cos();
+        let (sine, cosine) = angle(i).sin_cos();
         DVec3::new(y * cosine, r, y * sine) * RADIUS
     };
     let index = |ring: u32, i: u32| ring * rings + i % rings;
     let all = || (0..rings).flat_map(move |ring| (0..rings).map(move |i| (ring, i)));
-    let vertices = all().map(|(ring, i)| place(ring, i)).collect();
+    let vertices = all().map(|(ring, i)| position(ring, i)).collect();
     let quad = |(ring, i): (u32, u32)| {
         let [a, b] = [index(ring, i), index(ring, i + 1)];
         let [c, d] = [index((ring + 1) % rings, i), index((ring + 1) % rings, i + 1)];
@@ -64,34 +70,33 @@ pub fn sphere_mesh(rings: u32) -> Mesh {
     Mesh { vertices, triangles: all().flat_map(quad).collect() }
 }
 
-/// A world, and the plain loops that do the same.
+/// A world with one body, and the plain loops that it is compared with.
 #[derive(Debug)]
-pub struct Trial {
+pub struct SingleBodyBenchmark {
     world: World,
-    restart: u64,
-    rests: bool,
+    /// Steps after which the motion restarts.
+    restart_interval: u64,
+    at_rest: bool,
 }
 
-const RADIUS: f64 = 0.3;
-
-impl Trial {
-    /// A sphere of `count` particles, 1 kg in all, that moves as said.
+impl SingleBodyBenchmark {
+    /// Creates the benchmark for a sphere of `count` particles and 1 kg.
     ///
     /// # Errors
-    /// What the world says of it.
+    /// If the shape or the world cannot be built.
     pub fn new(
         count: usize,
         motion: Motion,
         integrator: Integrator,
     ) -> Result<Self, Box<dyn std::error::Error>> {
-        let places = fibonacci_sphere(count, RADIUS);
-        let shape = Shape::from_particles(&places)?;
+        let positions = fibonacci_sphere(count, RADIUS);
+        let shape = Shape::from_particles(&positions)?;
         let mass = 1.0;
-        let rests = !matches!(motion, Motion::Flight | Motion::Bouncing);
+        let at_rest = !matches!(motion, Motion::Flight | Motion::Bouncing);
         let cap = RADIUS * (1.0 - 0.114);
-        let depths: f64 = places.iter().map(|p| (-p.y - cap).max(0.0)).sum();
+        let depths: f64 = positions.iter().map(|p| (-p.y - cap).max(0.0)).sum();
         let stiffness =
-            if rests && depths > 0.0 { 9.8 * mass / depths } else { 1e4 / count as f64 };
+            if at_rest && depths > 0.0 { 9.8 * mass / depths } else { 1e4 / count as f64 };
         let damped = matches!(motion, Motion::DampedRest | Motion::RoughRest);
         let material = Material {
             collision_stiffness: stiffness,
@@ -121,55 +126,61 @@ impl Trial {
             .box_walls(&WallBox::arena())
             .body(body)
             .build()?;
-        let restart = if motion == Motion::Bouncing { 3000 } else { u64::MAX };
-        Ok(Self { world, restart, rests })
+        let restart_interval = if motion == Motion::Bouncing { 3000 } else { u64::MAX };
+        Ok(Self { world, restart_interval, at_rest })
     }
 
-    /// Times one step of the loop as compiled, of the loop in vectors, and of the world (s), in turns.
+    /// Times a step of the compiled loop, of the vectorised loop and of the world, in turns (s).
     ///
     /// # Errors
-    /// When a step fails, or a body that is to rest does not.
+    /// If a step fails, or if a body that should be at rest has left the floor.
     pub fn measure(&mut self) -> Result<[f64; 3], Box<dyn std::error::Error>> {
-        let mut failed = Ok(());
-        let mut compiled = looped(PlainLoop::of(&self.world, Style::Compiled), self.restart);
-        let mut vectors = looped(PlainLoop::of(&self.world, Style::Vectors), self.restart);
-        let (world, restart) = (&mut self.world, self.restart);
+        let mut outcome = Ok(());
+        let mut compiled = step_with_restarts(
+            PlainLoop::from_world(&self.world, LoopStyle::Compiled),
+            self.restart_interval,
+        );
+        let mut vectors = step_with_restarts(
+            PlainLoop::from_world(&self.world, LoopStyle::Vectors),
+            self.restart_interval,
+        );
+        let (world, restart_interval) = (&mut self.world, self.restart_interval);
         let start = world.state().clone();
-        let mut stepped = |steps: u64| {
+        let mut step_world = |steps: u64| {
             for _ in 0..steps {
-                let stepped = world.step();
-                if failed.is_ok() {
-                    failed = stepped.map_err(|error| error.to_string());
+                let result = world.step();
+                if outcome.is_ok() {
+                    outcome = result.map_err(|error| error.to_string());
                 }
-                if world.state().step % restart == 0 {
-                    // it was a state of this world before
+                if world.state().step % restart_interval == 0 {
+                    // cannot fail: the state comes from this world
                     let _ = world.restore(start.clone());
                 }
             }
         };
-        let times = side_by_side([&mut compiled, &mut vectors, &mut stepped]);
-        failed?;
-        if self.rests && self.world.energy().elastic == 0.0 {
+        let times = time_in_turns([&mut compiled, &mut vectors, &mut step_world]);
+        outcome?;
+        if self.at_rest && self.world.energy().elastic == 0.0 {
             return Err("the body has left the floor".into());
         }
         Ok(times)
     }
 
-    /// The world, as it is now.
+    /// The world in its current state.
     pub fn world(&self) -> &World {
         &self.world
     }
 }
 
-/// The loop, from the start again every `restart` steps.
-fn looped(mut plain: PlainLoop, restart: u64) -> impl FnMut(u64) {
-    let (start, mut done) = (plain.state, 0);
+/// A function that steps the loop and returns it to its initial state every `restart_interval` steps.
+fn step_with_restarts(mut plain_loop: PlainLoop, restart_interval: u64) -> impl FnMut(u64) {
+    let (start, mut done) = (plain_loop.state, 0);
     move |steps| {
         for _ in 0..steps {
-            plain.step();
+            plain_loop.step();
             done += 1;
-            if done % restart == 0 {
-                plain.state = start;
+            if done % restart_interval == 0 {
+                plain_loop.state = start;
             }
         }
     }
