@@ -1,5 +1,4 @@
 """The bouncing body in MuJoCo: a mesh geometry, which MuJoCo replaces by its convex hull, between six planes."""
-import math
 import os
 import tempfile
 import time

@@ -10,9 +10,6 @@ R = 0.05  # m, radius of a sphere
 CORNERS = R * np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
 SPHERE_MASS = 1000.0 * 4.0 / 3.0 * np.pi * R**3  # kg, at 1000 kg/m^3
 MASS = 8 * SPHERE_MASS  # 4.18879 kg
-# kg m^2, about every axis: 2 R^2 from the positions of the spheres, 2/5 R^2 from each sphere about its centre
-INERTIA = MASS * (2.0 + 2.0 / 5.0) * R**2
-POINT_INERTIA = MASS * 2.0 * R**2  # of point masses at the centres of the spheres
 
 GRAVITY = 9.81  # m/s^2, along -z
 DT = 1e-4  # s

@@ -30,8 +30,11 @@ fn benchmark_steps() -> BenchResult {
     for (count, motions) in [
         (8, [Motion::Flight, Motion::Bouncing].as_slice()),
         (42, &[Motion::Flight, Motion::Bouncing]),
-        (4025, &[Motion::Flight, Motion::Bouncing, Motion::Rest, Motion::RoughRest]),
-        (1_000_000, &[Motion::Flight, Motion::Rest, Motion::DampedRest, Motion::RoughRest]),
+        (4025, &[Motion::Flight, Motion::Bouncing, Motion::Rest, Motion::RestWithFriction]),
+        (
+            1_000_000,
+            &[Motion::Flight, Motion::Rest, Motion::RestWithDashpots, Motion::RestWithFriction],
+        ),
     ] {
         for &motion in motions {
             for integrator in [Integrator::Euler, Integrator::Splitting] {

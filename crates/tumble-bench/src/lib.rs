@@ -11,5 +11,5 @@ pub use full_run::{RunTime, time_run};
 pub use heaps::{HeapCost, measure_heaps};
 pub use machine::describe_machine;
 pub use plain_loop::{LoopStyle, PlainLoop};
-pub use single_body::{Motion, SingleBodyBenchmark, fibonacci_sphere, sphere_mesh};
+pub use single_body::{Motion, SingleBodyBenchmark, sphere_mesh};
 pub use timing::time_in_turns;

@@ -19,8 +19,7 @@ pub enum LoopStyle {
 /// The basic system for one body and walls, as a plain loop over its particles.
 #[derive(Clone, Debug)]
 pub struct PlainLoop {
-    /// How the loop is written.
-    pub style: LoopStyle,
+    style: LoopStyle,
     /// Positions of the particles in the body frame (m).
     positions: Vec<DVec3>,
     /// The same positions as one array per coordinate, padded to a multiple of eight.

@@ -11,7 +11,7 @@ const RADIUS: f64 = 0.3;
 /// `count` evenly distributed points on a sphere of the given radius (m).
 ///
 /// The points lie on a Fibonacci spiral.
-pub fn fibonacci_sphere(count: usize, radius: f64) -> Vec<DVec3> {
+fn fibonacci_sphere(count: usize, radius: f64) -> Vec<DVec3> {
     let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     (0..count)
         .map(|i| {
@@ -33,9 +33,9 @@ pub enum Motion {
     /// At rest on the floor, with 5.7 % of the particles in contact.
     Rest,
     /// As [`Motion::Rest`], with contact dashpots.
-    DampedRest,
-    /// As [`Motion::DampedRest`], with friction.
-    RoughRest,
+    RestWithDashpots,
+    /// As [`Motion::RestWithDashpots`], with friction.
+    RestWithFriction,
 }
 
 impl Motion {
@@ -45,8 +45,8 @@ impl Motion {
             Self::Flight => "flight",
             Self::Bouncing => "bouncing",
             Self::Rest => "rest",
-            Self::DampedRest => "rest, dashpots",
-            Self::RoughRest => "rest, dashpots and friction",
+            Self::RestWithDashpots => "rest, dashpots",
+            Self::RestWithFriction => "rest, dashpots and friction",
         }
     }
 }
@@ -97,11 +97,11 @@ impl SingleBodyBenchmark {
         let depths: f64 = positions.iter().map(|p| (-p.y - cap).max(0.0)).sum();
         let stiffness =
             if at_rest && depths > 0.0 { 9.8 * mass / depths } else { 1e4 / count as f64 };
-        let damped = matches!(motion, Motion::DampedRest | Motion::RoughRest);
+        let damped = matches!(motion, Motion::RestWithDashpots | Motion::RestWithFriction);
         let material = Material {
             collision_stiffness: stiffness,
             damping: if damped { Damping::Restitution(0.5) } else { Damping::Dashpot(0.0) },
-            friction_stiffness: if motion == Motion::RoughRest { 0.5 } else { 0.0 },
+            friction_stiffness: if motion == Motion::RestWithFriction { 0.5 } else { 0.0 },
             ..Material::default()
         };
         let drag = if motion == Motion::Bouncing { mass / count as f64 } else { 0.0 };
@@ -164,11 +164,6 @@ impl SingleBodyBenchmark {
             return Err("the body has left the floor".into());
         }
         Ok(times)
-    }
-
-    /// The world in its current state.
-    pub fn world(&self) -> &World {
-        &self.world
     }
 }
 
