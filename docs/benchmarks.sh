@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes docs/benchmarks.md: times on this machine. Takes some twenty minutes; let the machine do nothing else.
+# Generates docs/benchmarks.md with the times of this machine. Takes about twenty minutes. Keep the machine otherwise idle.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 page=$(mktemp)
@@ -9,27 +9,27 @@ cargo build --release --locked
 cat >"$page" <<'PAGE'
 # Benchmarks
 
-Made by `docs/benchmarks.sh`, which runs `cargo bench`, `bench/bouncing/run.sh` and
-`bench/heap/run.sh`. Times are those of one machine on one day; ratios
-come from one run, in which the candidates take turns, and say more.
+`docs/benchmarks.sh` generates this page. It runs `cargo bench`, `bench/bouncing/run.sh` and `bench/heap/run.sh`.
+All times are from one machine. The ratios are more meaningful than the times: they compare candidates that took turns in
+the same run.
 
-The plain loop does the basic system for every particle: turn it, its velocity, gravity, drag, five walls with springs, force and torque. *Compiled*
-is the loop as one writes it down; *vectors* is the same by hand in the widest registers of the processor. The body is a sphere of
-radius 0.3 m. In *flight* it is near no wall; *bouncing*, it is thrown into the arena for 3 s; at *rest*, 5.7 % of its particles are
-in contact with the floor. Dashpots and friction are tumble's alone: the loop beside them has springs only. Both loops step as `euler` does;
-`splitting` pays for exact flight.
+The plain loop evaluates the basic system for every particle: its rotation, its velocity, gravity, drag, the springs of five walls, force and torque.
+*Compiled* is scalar code that the compiler optimises. *Vectors* is the same loop written with explicit vectors for the widest registers of the
+processor. The body is a sphere of radius 0.3 m. In *flight* it is far from every wall. *Bouncing*, it is thrown into the arena for 3 s. At *rest*, 5.7 % of
+its particles are in contact with the floor. Only tumble has dashpots and friction; the loop in those rows has springs only. Both loops use
+the `euler` integrator. `splitting` costs more per step and integrates free flight exactly.
 
 PAGE
 cargo bench --locked -p tumble-bench --bench speed >>"$page"
 {
-    printf '\n## Bouncing, beside MuJoCo and Rapier\n\n'
-    printf 'One body of 40,000 points in a closed box; [bench/README.md](../bench/README.md) has the settings that make it fair.\n\n'
+    printf '\n## Bouncing body, compared with MuJoCo and Rapier\n\n'
+    printf 'One body of 40,000 points bounces in a closed box. [bench/README.md](../bench/README.md) describes the settings of each engine.\n\n'
     TUMBLE=$PWD/target/release/tumble bench/bouncing/run.sh
-    printf '\n## A heap of clumps, beside LAMMPS\n\n'
-    printf 'Clumps of eight spheres fall into an open box; [bench/README.md](../bench/README.md) says how. One core each.\n\n'
+    printf '\n## Heap of clumps, compared with LAMMPS\n\n'
+    printf 'Clumps of eight spheres fall into an open box, simulated on one core. [bench/README.md](../bench/README.md) describes the set-up.\n\n'
     TUMBLE=$PWD/target/release/tumble bench/heap/run.sh
-    printf '\n## Heaps at rest, small and large\n\n'
-    printf 'A heap of 1000 such clumps at rest, and 8 and 100 of it side by side; all take turns, medians of nine rounds.\n\n'
+    printf '\n## Heaps at rest, from 1000 to 100,000 clumps\n\n'
+    printf 'The heaps consist of 1, 8 and 100 copies of a heap of 1000 such clumps at rest. They are timed in turns; values are medians of nine rounds.\n\n'
     cargo bench --locked -p tumble-bench --bench heaps
 } >>"$page"
 mv "$page" docs/benchmarks.md

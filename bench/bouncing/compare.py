@@ -1,7 +1,7 @@
-"""Times the engines in turns and prints two tables.
+"""Times the engines in turns, checks their motions, and prints a table of each.
 
-compare.py FOLDER ROUNDS tumble=PATH mujoco=yes rapier=PATH
-FOLDER holds what body.py wrote; an engine that is not named is left out.
+compare.py FOLDER ROUNDS [tumble=PATH] [mujoco=yes] [rapier=PATH]
+FOLDER holds the output of body.py. An engine that is not named is left out.
 """
 import statistics
 import sys
@@ -13,12 +13,12 @@ import motion
 from with_rapier import Rapier
 from with_tumble import Tumble
 
-# dt (s), and the contact of a particle that throws the body back at 0.7 with that step
+# dt (s), stiffness (N/m) and dashpot (N·s/m) per particle; with that dashpot a flat drop rebounds at about 0.7 of its speed
 TUMBLE = (
     (1e-3, 8e3, 4.0),
     (2.5e-4, 4e4, 15.0),
 )
-# precision, shape, and how far it is run (s); a step of the triangle mesh takes tens of milliseconds
+# precision, shape, and simulated time (s), limited for the triangle mesh because its steps take tens of milliseconds
 RAPIER = (
     ("f32", "hull", None),
     ("f64", "hull", None),
@@ -26,16 +26,15 @@ RAPIER = (
     ("f32", "trimesh", 0.3),
 )
 
+FAILURES = []  # messages, printed after the tables
 
-FAILED = []  # notes
 
-
-def rows(folder, tumble=None, rapier=None, mujoco=None):
-    """What makes one engine with one group of settings each, after a name for it."""
+def engine_factories(folder, tumble=None, rapier=None, mujoco=None):
+    """Yields the name of an engine, and a function that creates it, for each row of the tables."""
     if tumble:
         for dt, k, c in TUMBLE:
             sets = [f"collision.collision_stiffness={k!r}", f"collision.collision_damping={c!r}"]
-            settings = f"splitting; {k:g} N/m, {c:g} N·s/m a particle"
+            settings = f"splitting; {k:g} N/m, {c:g} N·s/m per particle"
             yield "tumble", partial(Tumble, tumble, folder, dt, settings, sets)
     if mujoco:
         for settings in ({}, {"integrator": "implicitfast"}, {"hull": 64}):
@@ -45,31 +44,31 @@ def rows(folder, tumble=None, rapier=None, mujoco=None):
             yield "Rapier", partial(Rapier, rapier, folder, *settings)
 
 
-def mujoco_engine(*words, **settings):
-    """MuJoCo is imported only where it is wanted."""
+def mujoco_engine(*arguments, **settings):
+    """Creates a MuJoCo engine. The import is local because MuJoCo may be missing."""
     from with_mujoco import MuJoCo
 
-    return MuJoCo(*words, **settings)
+    return MuJoCo(*arguments, **settings)
 
 
-def attempt(name, what):
-    """The result of `what`; if it fails, None, and a note for the last lines."""
+def attempt(name, function):
+    """Returns the result of `function`. If it fails, records the message and returns None."""
     try:
-        return what()
-    except Exception as error:  # whatever is wrong with one engine, the others are still compared
-        said = getattr(error, "stderr", None) or str(error)
-        if isinstance(said, bytes):
-            said = said.decode(errors="replace")
-        lines = [line for line in said.splitlines() if line.strip()] or [repr(error)]
-        FAILED.append(f"{name}: {lines[0]}")
+        return function()
+    except Exception as error:  # any failure of one engine leaves the others in the comparison
+        message = getattr(error, "stderr", None) or str(error)
+        if isinstance(message, bytes):
+            message = message.decode(errors="replace")
+        lines = [line for line in message.splitlines() if line.strip()] or [repr(error)]
+        FAILURES.append(f"{name}: {lines[0]}")
         return None
 
 
-def timed(engines, rounds):
-    """Each engine that runs, and the median seconds of its phases; all of them take turns."""
-    found = [[] for _ in engines]
+def median_times(engines, rounds):
+    """Times the engines in turns; returns each engine that runs with the median seconds of its phases."""
+    all_runs = [[] for _ in engines]
     for number in range(rounds):
-        for engine, runs in zip(engines, found):
+        for engine, runs in zip(engines, all_runs):
             if number > 0 and (engine.until or not runs):
                 continue
             name = f"{engine.engine}, {engine.settings}"
@@ -78,45 +77,45 @@ def timed(engines, rounds):
                 runs.append(seconds)
     return [
         (engine, [statistics.median(phase) for phase in zip(*runs)])
-        for engine, runs in zip(engines, found)
+        for engine, runs in zip(engines, all_runs)
         if runs
     ]
 
 
-def table(head, rows):
-    """A Markdown table."""
-    for words in (head, ["---"] * len(head), *rows):
-        print("|", " | ".join(words), "|", flush=True)
+def print_table(headings, rows):
+    """Prints a Markdown table."""
+    for cells in (headings, ["---"] * len(headings), *rows):
+        print("|", " | ".join(cells), "|", flush=True)
     print()
 
 
-def names(engine):
-    """What a row begins with."""
+def first_cells(engine):
+    """The first cells of a row: engine, settings, dt."""
     return [engine.engine, engine.settings, f"{engine.dt:g}"]
 
 
-def figure(value):
-    """Three digits, never as a power of ten."""
+def three_digits(value):
+    """Formats a number with three significant digits and without an exponent."""
     return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
-def times(medians):
-    """Rows of times. The last column compares with the first engine."""
+def time_rows(medians):
+    """Rows of times. The last column is relative to the first row."""
     ends = [0.0, *motion.PHASES.values()]
     first = sum(medians[0][1])
-    for engine, spent in medians:
+    for engine, seconds in medians:
         if engine.until:
-            yield [*names(engine), figure(1e6 * spent[0] * engine.dt / engine.until), *["–"] * 5]
+            yield [*first_cells(engine), three_digits(1e6 * seconds[0] * engine.dt / engine.until), *["–"] * 5]
             continue
-        whole = sum(spent)
+        whole = sum(seconds)
         steps = [(b - a) / engine.dt for a, b in zip(ends, ends[1:])]
-        micros = [1e6 * s / n for s, n in zip([*spent, whole], [*steps, sum(steps)])]
-        per_second = figure(1e3 * whole / ends[-1])
-        yield [*names(engine), *map(figure, micros), per_second, f"{whole / first:.3g}"]
+        micros = [1e6 * s / n for s, n in zip([*seconds, whole], [*steps, sum(steps)])]
+        per_second = three_digits(1e3 * whole / ends[-1])
+        yield [*first_cells(engine), *map(three_digits, micros), per_second, f"{whole / first:.3g}"]
 
 
-def looks(engines, folder):
-    """Rows of what the motions are like, from runs of their own."""
+def motion_rows(engines, folder):
+    """Rows of properties of the motion, from separate runs that are not timed."""
     body, moments = motion.points(folder), motion.setup(folder)["moments"]
     hull = body[ConvexHull(body).vertices]
     bouncing = slice(round(motion.PHASES["bouncing"] / motion.DT))
@@ -125,22 +124,23 @@ def looks(engines, folder):
     for engine in engines:
         if engine.until:
             continue
-        print(f"look: {engine.engine}, {engine.settings}", file=sys.stderr)
-        found = attempt(f"look at {engine.engine}", lambda: (engine.states(drop=True)[0], engine.states()))
-        if not found:
+        print(f"motion: {engine.engine}, {engine.settings}", file=sys.stderr)
+        name = f"motion of {engine.engine}"
+        runs = attempt(name, lambda: (engine.states(drop=True)[0], engine.states()))
+        if not runs:
             continue
-        drop, (states, contacts) = found
+        drop, (states, contacts) = runs
         kinetic, energy = motion.energies(states, moments)
         parts = (drop, states[bouncing], states[rest])
-        depth, points = zip(*(motion.behind(part, body, hull) for part in parts))
-        # every particle behind a wall is a contact, unless the engine has its own
-        most, mean = points[1].max(), points[2].mean()
+        depths, counts = zip(*(motion.wall_contacts(part, body, hull) for part in parts))
+        # for an engine that does not report contacts, count the particles behind a wall
+        most, mean = counts[1].max(), counts[2].mean()
         if contacts is not None:
             most, mean = contacts[bouncing].max(), contacts[rest].mean()
         yield [
-            *names(engine),
+            *first_cells(engine),
             f"{motion.rebound(drop):.2f}",
-            *(f"{1e3 * part.max():.2g}" for part in depth),
+            *(f"{1e3 * part.max():.2g}" for part in depths),
             f"{most:.0f}, {mean:.3g}",
             f"{start:.0f}, {energy[bouncing][-1]:.0f}, {energy[-1]:.1f}",
             f"{kinetic[rest].max():.1g}",
@@ -148,26 +148,26 @@ def looks(engines, folder):
 
 
 def main():
-    folder, rounds, *programs = sys.argv[1:]
-    chosen = dict(word.split("=", 1) for word in programs)
-    engines = [attempt(name, make) for name, make in rows(folder, **chosen)]
-    medians = timed([engine for engine in engines if engine], int(rounds))
-    begin = ["engine", "settings", "dt (s)"]
-    micros = [f"{name}, µs/step" for name in (*motion.PHASES, "whole")]
+    folder, rounds, *engine_options = sys.argv[1:]
+    options = dict(option.split("=", 1) for option in engine_options)
+    engines = [attempt(name, make) for name, make in engine_factories(folder, **options)]
+    medians = median_times([engine for engine in engines if engine], int(rounds))
+    common = ["engine", "settings", "dt (s)"]
+    micros = [f"{name}, µs/step" for name in (*motion.PHASES, "whole run")]
     if medians:
-        table([*begin, *micros, "whole, ms per simulated s", "× the first row"], times(medians))
-    looked = [
+        print_table([*common, *micros, "whole run, ms per simulated s", "relative to the first row"], time_rows(medians))
+    properties = [
         "rebound, flat drop",
-        "deepest: flat drop (mm)",
+        "greatest depth: flat drop (mm)",
         "bouncing (mm)",
         "at rest (mm)",
-        "contacts: most bouncing, mean at rest",
+        "contacts: maximum bouncing, mean at rest",
         "energy at 0, 2, 10 s (J)",
-        "kinetic at rest (J)",
+        "kinetic energy at rest (J)",
     ]
-    table([*begin, *looked], looks([engine for engine, _ in medians], folder))
-    for note in FAILED:
-        print("Failed:", note)
+    print_table([*common, *properties], motion_rows([engine for engine, _ in medians], folder))
+    for message in FAILURES:
+        print("Failed:", message)
 
 
 main()

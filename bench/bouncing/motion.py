@@ -1,4 +1,4 @@
-"""What all engines share: the box, the motion, its phases, and how a motion is looked at."""
+"""Definitions shared by all engines: the box, the initial states, the phases, and the analysis of a motion."""
 import pathlib
 
 import numpy as np
@@ -10,13 +10,13 @@ MASS = 10.0  # kg
 RESTITUTION = 0.7
 FRICTION = 0.1
 
-# where it starts: position (m), velocity (m/s), angular velocity (rad/s)
+# initial state: position (m), velocity (m/s), angular velocity (rad/s)
 BOUNCE = ((0.0, 0.0, 0.2), (2.0, 1.0, 0.0), (3.0, 4.0, 2.0))
-# flat onto the floor, for the restitution alone: no wall, no spin
+# a flat drop onto the floor without spin, to measure the restitution
 DROP = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-DROP_TIME = 0.6  # s, up to the top of the first rebound or beyond
+DROP_TIME = 0.6  # s, at least until the top of the first rebound
 
-# the ends of the timed phases (s)
+# end of each timed phase (s)
 PHASES = {"bouncing": 2.0, "settling": 9.0, "at rest": 10.0}
 
 
@@ -27,13 +27,13 @@ def points(folder):
 
 
 def setup(folder):
-    """Key to numbers, as body.py wrote them."""
+    """The values of setup.txt, a list of numbers for each key."""
     text = pathlib.Path(folder, "setup.txt").read_text()
     return {key: [float(v) for v in values] for key, *values in map(str.split, text.splitlines())}
 
 
 def rotations(q):
-    """Rotation matrices of quaternions (w, x, y, z), one a row."""
+    """Rotation matrices of quaternions (w, x, y, z), one per row."""
     w, x, y, z = (q / np.linalg.norm(q, axis=1)[:, None]).T
     rows = [
         [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -43,36 +43,38 @@ def rotations(q):
     return np.moveaxis(np.array(rows), 2, 0)
 
 
-def behind(states, body, hull):
-    """For each state how deep the deepest point is behind a wall (m; 0 in flight), and how many are.
+def wall_contacts(states, body, hull):
+    """Greatest depth behind a wall (m; 0 in flight) and number of points behind a wall, for each state.
 
-    The deepest is a corner of the hull, so the whole body is looked at in contact only.
+    The deepest point is a vertex of the hull, so all points are transformed only for states in contact.
     """
     deepest, count = np.zeros(len(states)), np.zeros(len(states), int)
-    for at, (state, turn) in enumerate(zip(states, rotations(states[:, 3:7]))):
-        deepest[at] = max(0.0, np.abs(hull @ turn.T + state[:3]).max() - BOX)
-        if deepest[at] > 0.0:
-            count[at] = (np.abs(body @ turn.T + state[:3]).max(axis=1) > BOX).sum()
+    for i, (state, rotation) in enumerate(zip(states, rotations(states[:, 3:7]))):
+        deepest[i] = max(0.0, np.abs(hull @ rotation.T + state[:3]).max() - BOX)
+        if deepest[i] > 0.0:
+            count[i] = (np.abs(body @ rotation.T + state[:3]).max(axis=1) > BOX).sum()
     return deepest, count
 
 
 def energies(states, moments):
-    """Kinetic energy at each state, and with the height above the floor (J), from the velocities
-    that the engine reports."""
-    turn = rotations(states[:, 3:7])
-    spin = np.einsum("nij,ni->nj", turn, states[:, 10:13])  # along the body's axes
+    """Kinetic energy and mechanical energy (J) of each state, from the velocities that the engine reports.
+
+    The potential energy is zero at the floor.
+    """
+    rotation = rotations(states[:, 3:7])
+    spin = np.einsum("nij,ni->nj", rotation, states[:, 10:13])  # in the body frame
     kinetic = 0.5 * MASS * (states[:, 7:10] ** 2).sum(axis=1) + 0.5 * (spin**2 @ moments)
     return kinetic, kinetic + MASS * GRAVITY * (states[:, 2] + BOX)
 
 
 def first_state(motion):
-    """A start as a state: position, orientation, velocity, angular velocity."""
+    """The initial state as a row: position, orientation, velocity, angular velocity."""
     position, velocity, spin = motion
     return np.array([[*position, 1.0, 0.0, 0.0, 0.0, *velocity, *spin]])
 
 
 def rebound(states):
-    """Speed after the first bounce over the speed before it, along z."""
+    """Ratio of the vertical speeds after and before the first bounce."""
     vz = states[:, 9]
-    down = vz.argmin()
-    return vz[down:].max() / -vz[down]
+    impact = vz.argmin()
+    return vz[impact:].max() / -vz[impact]

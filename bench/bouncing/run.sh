@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# One body of 40,000 points that bounces in a closed box, in several engines, as Markdown tables on
-# standard output. TUMBLE=path takes a tumble that is built already, ROUNDS=n times n rounds (3).
-# Progress goes to standard error.
+# Simulates one body of 40,000 points that bounces in a closed box with several engines. Prints Markdown tables to standard
+# output, progress to standard error.
+# Environment: TUMBLE, path of a built tumble (default: build it); ROUNDS, number of timing rounds (3);
+# RAPIER_TARGET, target folder of the Rapier program (rapier/target).
 set -euo pipefail
 cd "$(dirname "$0")"
 venv=$PWD/../.venv
@@ -11,7 +12,7 @@ log=$scratch/log
 skipped=()
 engines=()
 
-install() { # install NAME PACKAGE…: into the virtual environment
+install() { # install NAME PACKAGE…: installs into the virtual environment
     local name=$1
     shift
     echo "install $name" >&2
@@ -31,8 +32,8 @@ engines+=("tumble=$tumble")
 
 [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
 python=$venv/bin/python
-if ! install "the body" numpy==2.4.6 scipy==1.17.1; then
-    echo "Nothing can be run without NumPy and SciPy, which make the body. ${skipped[*]}" >&2
+if ! install "NumPy and SciPy" numpy==2.4.6 scipy==1.17.1; then
+    echo "NumPy and SciPy are required. ${skipped[*]}" >&2
     exit 1
 fi
 if install MuJoCo mujoco==4.0.0; then engines+=("mujoco=yes"); fi
@@ -45,7 +46,7 @@ else
     skipped+=("Rapier: not built: $(grep -v '^ *$' "$log" | tail -n 1)")
 fi
 
-# all engines on one core: the last one
+# run all engines on one core, the last one
 pin=()
 if command -v taskset >/dev/null; then
     last=$(sed -n 's/^Cpus_allowed_list:.*[^0-9]\([0-9]*\)$/\1/p' /proc/self/status)

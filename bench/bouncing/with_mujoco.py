@@ -1,5 +1,4 @@
-"""The bouncing body in MuJoCo: a mesh geometry, which it takes as its convex hull, between six planes."""
-import math
+"""The bouncing body in MuJoCo: a mesh geometry, which MuJoCo replaces by its convex hull, between six planes."""
 import os
 import tempfile
 import time
@@ -9,13 +8,13 @@ import numpy as np
 
 from motion import BOUNCE, BOX, DROP, DROP_TIME, DT, FRICTION, GRAVITY, MASS, PHASES, rotations, setup
 
-# a spring of MuJoCo's default time constant (s), with the damping ratio that throws back at 0.7
+# MuJoCo's default time constant (s), and the damping ratio for which a flat drop rebounds at 0.7 of its speed
 TIME_CONSTANT, DAMPING_RATIO = 0.02, 0.113
 
 MODEL = """
 <mujoco>
   <option gravity="0 0 {gravity}" timestep="{dt}" integrator="{integrator}">
-    <!-- a run that blows up is not to start anew unseen -->
+    <!-- do not reset a diverging simulation without notice -->
     <flag autoreset="disable"/>
   </option>
   <default>
@@ -37,22 +36,22 @@ MODEL = """
 
 
 def walls():
-    """Six planes that look inwards."""
+    """Six planes with inward normals."""
     faces = [np.array(n) for axis in np.eye(3) for n in (axis, -axis)]
     plane = '<geom type="plane" size="0 0 1" pos="{}" zaxis="{}"/>'
-    words = (" ".join(map(str, v)) for n in faces for v in (-BOX * n, n))
-    return "\n    ".join(plane.format(pos, n) for pos, n in zip(words, words))
+    vectors = (" ".join(map(str, v)) for n in faces for v in (-BOX * n, n))
+    return "\n    ".join(plane.format(pos, n) for pos, n in zip(vectors, vectors))
 
 
 class MuJoCo:
-    """One row: an integrator, and the most vertices that the hull may have (-1: all)."""
+    """One row of the tables: an integrator, and the maximum number of hull vertices (-1: no limit)."""
 
     engine = f"MuJoCo {mujoco.__version__}"
-    until = None  # all of it
+    until = None  # runs all phases
 
     def __init__(self, folder, integrator="Euler", hull=-1, damping_ratio=DAMPING_RATIO):
         self.dt = DT
-        os.chdir(tempfile.mkdtemp())  # MuJoCo writes its warnings into a file where it runs
+        os.chdir(tempfile.mkdtemp())  # MuJoCo writes warnings to a file in the working directory
         self.model = mujoco.MjModel.from_xml_string(
             MODEL.format(
                 gravity=-GRAVITY,
@@ -75,22 +74,22 @@ class MuJoCo:
         data = mujoco.MjData(self.model)
         position, velocity, spin = motion
         data.qpos[:3], data.qvel[:3] = position, velocity
-        data.qvel[3:] = spin  # along the body's axes, which start along the world's
+        data.qvel[3:] = spin  # in the body frame, which is initially aligned with the world frame
         return data
 
     def seconds(self):
-        """Seconds in the steps of each phase."""
-        data, spent, done = self._start(BOUNCE), [], 0
+        """Wall-clock seconds of the steps of each phase."""
+        data, seconds, done = self._start(BOUNCE), [], 0
         for end in PHASES.values():
             steps = round(end / DT) - done
             clock = time.perf_counter()
             mujoco.mj_step(self.model, data, steps)
-            spent.append(time.perf_counter() - clock)
+            seconds.append(time.perf_counter() - clock)
             done += steps
-        return spent
+        return seconds
 
     def states(self, drop=False):
-        """Position, orientation, velocity and angular velocity, one row a step, and its contacts."""
+        """Position, orientation, velocity and angular velocity, one row per step, and the number of contacts."""
         data = self._start(DROP if drop else BOUNCE)
         rows, contacts = [], []
         for _ in range(round((DROP_TIME if drop else max(PHASES.values())) / DT)):
@@ -98,6 +97,6 @@ class MuJoCo:
             rows.append(np.concatenate((data.qpos, data.qvel)))
             contacts.append(data.ncon)
         states = np.array(rows)
-        # the angular velocity along the world's axes
+        # angular velocity from the body frame to the world frame
         states[:, 10:] = np.einsum("nij,nj->ni", rotations(states[:, 3:7]), states[:, 10:])
         return states, np.array(contacts)

@@ -1,7 +1,7 @@
-"""Writes the start of a heap into a folder, for every engine the same to the last bit.
+"""Writes the initial state of a heap into a folder, bit-identical for all engines.
 
-clumps.py FOLDER N [SEED]: `start.csv`, position and orientation (w, x, y, z) of N clumps, N a cube number;
-`heap.data` for LAMMPS; `heap.toml` for tumble.
+clumps.py FOLDER N [SEED] writes `start.csv`, the position and orientation (w, x, y, z) of N clumps, where N is a cube
+number; `heap.data` for LAMMPS; and `heap.toml` for tumble.
 """
 import csv
 import pathlib
@@ -11,7 +11,7 @@ import numpy as np
 
 import heap
 
-LAMMPS_HEAD = """Clumps of eight spheres
+LAMMPS_HEADER = """Clumps of eight spheres
 
 {atoms} atoms
 1 atom types
@@ -23,13 +23,13 @@ Atoms # hybrid
 
 """
 
-# a dashpot in LAMMPS is the mass in motion times a rate; here all clumps are alike, so it is a number
-TUMBLE_HEAD = """description = "A heap of {clumps} clumps of eight spheres"
+# a dashpot in LAMMPS is the effective mass times a rate; all clumps have the same mass, so it is a constant here
+TUMBLE_HEADER = """description = "A heap of {clumps} clumps of eight spheres"
 duration = 3.0
 dt = {dt!r}
 gravity = [0.0, 0.0, {gravity!r}]
 
-# clump on clump: half a clump's mass is in motion
+# between clumps: the effective mass is half the mass of a clump
 [collision]
 collision_stiffness = {k!r}
 collision_damping = {damping!r}
@@ -37,7 +37,7 @@ friction_stiffness = {friction!r}
 friction_spring = {k_t!r}
 friction_damping = {friction_damping!r}
 
-# clump on wall: a whole clump is
+# at walls: the effective mass is the mass of a clump
 [box]
 min = [0.0, 0.0, 0.0]
 max = [{width!r}, {width!r}, {height!r}]
@@ -62,13 +62,13 @@ orientation = {orientation}
 """
 
 
-def start(clumps, seed):
-    """Positions (m) and orientations (w, x, y, z): a lattice, each clump turned at random."""
+def initial_state(clumps, seed):
+    """Positions (m) and orientations (w, x, y, z) of clumps on a lattice, with random orientations."""
     n = round(clumps ** (1.0 / 3.0))
     if n**3 != clumps:
         raise SystemExit(f"clumps.py: {clumps} is not a cube number")
     z, y, x = np.indices((n, n, n)).reshape(3, -1)
-    # layer by layer from the floor
+    # layer by layer from the floor up
     position = np.column_stack((x, y, z)) * heap.PITCH
     position += (heap.PITCH / 2.0, heap.PITCH / 2.0, heap.FIRST)
     q = np.random.default_rng(seed).normal(size=(clumps, 4))
@@ -76,12 +76,12 @@ def start(clumps, seed):
 
 
 def height(clumps):
-    """Where the box ends above (m): nothing gets there, and LAMMPS complains if something does."""
+    """Height of the box (m), above all clumps at all times: LAMMPS fails if an atom leaves it."""
     return heap.width(clumps) + 1.0
 
 
 def write_start(path, position, q):
-    """`start.csv`."""
+    """Writes `start.csv`."""
     with path.open("w", newline="") as file:
         rows = csv.writer(file)
         rows.writerow(("px", "py", "pz", "qw", "qx", "qy", "qz"))
@@ -89,28 +89,28 @@ def write_start(path, position, q):
 
 
 def read_start(path):
-    """Positions and orientations of `start.csv`."""
+    """Reads positions and orientations from `start.csv`."""
     rows = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
     return rows[:, :3], rows[:, 3:]
 
 
 def write_lammps(path, position, q):
-    """`heap.data`: atom-ID, type, x, y, z, diameter, density, molecule-ID; spheres of a clump are a molecule."""
+    """Writes `heap.data`: atom-ID, type, x, y, z, diameter, density, molecule-ID. A clump is a molecule."""
     centres = heap.spheres(position, q)
     clumps = len(position)
-    head = LAMMPS_HEAD.format(atoms=8 * clumps, width=heap.width(clumps), height=height(clumps))
+    header = LAMMPS_HEADER.format(atoms=8 * clumps, width=heap.width(clumps), height=height(clumps))
     with path.open("w") as file:
-        file.write(head)
+        file.write(header)
         for number, (x, y, z) in enumerate(centres.reshape(-1, 3).tolist()):
-            place = f"{number + 1} 1 {x!r} {y!r} {z!r}"
-            file.write(f"{place} {2.0 * heap.R!r} 1000.0 {number // 8 + 1}\n")
+            atom = f"{number + 1} 1 {x!r} {y!r} {z!r}"
+            file.write(f"{atom} {2.0 * heap.R!r} 1000.0 {number // 8 + 1}\n")
 
 
 def write_tumble(path, position, q):
-    """`heap.toml`; with_tumble.py says how long it runs."""
+    """Writes `heap.toml`; with_tumble.py overrides the duration."""
     clumps = len(position)
     with path.open("w") as file:
-        file.write(TUMBLE_HEAD.format(
+        file.write(TUMBLE_HEADER.format(
             clumps=clumps,
             dt=heap.DT,
             gravity=-heap.GRAVITY,
@@ -135,7 +135,7 @@ def main():
     folder, clumps, *seed = sys.argv[1:]
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    position, q = start(int(clumps), int(seed[0]) if seed else 1)
+    position, q = initial_state(int(clumps), int(seed[0]) if seed else 1)
     write_start(folder / "start.csv", position, q)
     write_lammps(folder / "heap.data", position, q)
     write_tumble(folder / "heap.toml", position, q)

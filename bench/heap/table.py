@@ -1,43 +1,43 @@
-"""Makes Markdown tables of the results (JSON, one a line) on standard input: means over the starts that were run."""
+"""Reads results (JSON, one per line) from standard input and prints Markdown tables of statistics over the starts."""
 import json
 import statistics
 import sys
 
-# each column: what of a result, how the starts are summed up, how that is shown
+# column heading: (key of the result, statistic over the starts, format, scale factor)
 SPEED = {
-    "10⁶ body-steps/s, whole": ("body-steps a wall second", "median", "{:.3f}", 1e-6),
-    "last 0.5 s": ("body-steps a wall second, last", "median", "{:.3f}", 1e-6),
-    "of processor time, whole": ("body-steps a processor second", "median", "{:.3f}", 1e-6),
-    "of processor time, last 0.5 s": ("body-steps a processor second, last", "median", "{:.3f}", 1e-6),
+    "10⁶ body-steps/s, whole run": ("body-steps per wall second", "median", "{:.3f}", 1e-6),
+    "last 0.5 s": ("body-steps per wall second, last", "median", "{:.3f}", 1e-6),
+    "per second of processor time, whole run": ("body-steps per processor second", "median", "{:.3f}", 1e-6),
+    "per second of processor time, last 0.5 s": ("body-steps per processor second, last", "median", "{:.3f}", 1e-6),
 }
 HEAP = {
     "mean height (m)": ("mean height (m)", "mean", "{:.4f}", 1.0),
-    "contacts a clump": ("contacts a clump", "mean", "{:.2f}", 1.0),
+    "contacts per clump": ("contacts per clump", "mean", "{:.2f}", 1.0),
     "wall contacts": ("wall contacts", "mean", "{:.0f}", 1.0),
     "at rest after (s)": ("time to rest (s)", "mean", "{:.2f}", 1.0),
-    "deepest at the end (mm)": ("deepest", "max", "{:.2f}", 1e3),
-    "deepest of all looks (mm)": ("deepest of all looks (m)", "max", "{:.2f}", 1e3),
-    "kinetic a clump at the end (J)": ("kinetic a clump at the end (J)", "max", "{:.0e}", 1.0),
+    "deepest overlap at the end (mm)": ("deepest overlap at the end (m)", "max", "{:.2f}", 1e3),
+    "deepest overlap of all samples (mm)": ("deepest overlap of all samples (m)", "max", "{:.2f}", 1e3),
+    "kinetic energy per clump at the end (J)": ("kinetic energy per clump at the end (J)", "max", "{:.0e}", 1.0),
     "spheres outside": ("spheres outside", "sum", "{:.0f}", 1.0),
 }
 
 
 def cell(results, column):
-    """One number of all starts; a mean with its standard error where there are several."""
-    key, kind, form, unit = column
+    """The statistic of a column over all starts, with the standard error if it is a mean of several."""
+    key, statistic, number_format, scale = column
     values = [result.get(key) for result in results]
     if any(value is None for value in values):
         missing = sum(value is None for value in values)
-        return "–" if kind == "median" or missing == len(values) else f"– for {missing} of {len(values)}"
-    sums = {"median": statistics.median, "mean": statistics.fmean, "max": max, "sum": sum}
-    text = form.format(unit * sums[kind](values))
-    if kind == "mean" and len(values) > 1:
-        text += " ± " + form.format(unit * statistics.stdev(values) / len(values) ** 0.5)
+        return "–" if statistic == "median" or missing == len(values) else f"– for {missing} of {len(values)}"
+    statistics_by_name = {"median": statistics.median, "mean": statistics.fmean, "max": max, "sum": sum}
+    text = number_format.format(scale * statistics_by_name[statistic](values))
+    if statistic == "mean" and len(values) > 1:
+        text += " ± " + number_format.format(scale * statistics.stdev(values) / len(values) ** 0.5)
     return text
 
 
 def table(groups, columns):
-    """A Markdown table, one row for each engine and number of clumps."""
+    """Prints a Markdown table with one row per engine, settings and number of clumps."""
     rows = [["engine", "settings", "clumps", "simulated (s)", "starts", *columns]]
     rows.append(["---"] * len(rows[0]))
     for (engine, settings, clumps, seconds), results in groups.items():
@@ -51,7 +51,8 @@ def table(groups, columns):
 groups = {}
 for line in sys.stdin:
     result = json.loads(line)
-    result["deepest"] = max(result["deepest overlap (m)"], result["deepest at a wall (m)"])
+    depths = (result["deepest overlap of clumps (m)"], result["deepest overlap with a wall (m)"])
+    result["deepest overlap at the end (m)"] = max(depths)
     settings = ", ".join(f"{key} {value}" for key, value in result["settings"].items())
     key = (result["engine"], settings, result["clumps"], result["simulated (s)"])
     groups.setdefault(key, []).append(result)

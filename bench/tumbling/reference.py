@@ -1,7 +1,7 @@
 """Prints the orientation (w, x, y, z) of the tumbling body after 20 s, to 30 digits.
 
-Euler's equations and q' = q (0, w)/2, both polynomial of degree two, are summed as Taylor series
-of order 40 in numbers of 40 digits, in steps of 0.05 s. Takes under a minute.
+Euler's equations and q' = q (0, w)/2, both polynomial of degree two, are integrated by Taylor series
+of order 40 with 40 digits, in steps of 0.05 s. Takes under a minute.
 """
 from mpmath import mp, mpf
 
@@ -11,7 +11,7 @@ MOMENTS = [mpf(1), mpf(2), mpf(3)]
 
 
 def product(a, b, n):
-    """Coefficient n of the product of two series."""
+    """Coefficient n of the product of two power series."""
     return mp.fsum(a[k] * b[n - k] for k in range(n + 1))
 
 
@@ -25,7 +25,7 @@ def step(omega, q):
             (i3 - i1) / i2 * product(w[2], w[0], n),
             (i1 - i2) / i3 * product(w[0], w[1], n),
         ]
-        # q' = q (0, omega)/2, with omega along the body's own axes
+        # q' = q (0, omega)/2, with omega in the body frame
         turns = [
             [(-1, 1, 0), (-1, 2, 1), (-1, 3, 2)],
             [(1, 0, 0), (1, 2, 2), (-1, 3, 1)],
@@ -39,7 +39,7 @@ def step(omega, q):
     return end[:3], end[3:]
 
 
-# 0.01 is the double next to it, which is what the engines are given
+# the double closest to 0.01, as in the engines
 omega, q = [mpf(0.01), mpf(5), mpf(0.01)], [mpf(1), mpf(0), mpf(0), mpf(0)]
 for _ in range(STEPS):
     omega, q = step(omega, q)

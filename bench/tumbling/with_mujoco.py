@@ -1,18 +1,18 @@
 """Free tumbling in MuJoCo.
 
-`implicit` is left out: for this body it gives the very numbers of `implicitfast`.
+`implicit` is left out because it gives the same numbers as `implicitfast` for this body.
 """
 import os
 import tempfile
 
 import mujoco
-from score import MOMENTS, OMEGA, STEPS, TIME, row
+from score import MOMENTS, OMEGA, STEPS, TIME, print_row
 
-# no geometry and so no contact; exact moments
+# no geometry, hence no contact; exact moments
 MODEL = """
 <mujoco>
   <option gravity="0 0 0" timestep="{dt}" integrator="{integrator}">
-    <!-- a run that blows up is not to start anew unseen -->
+    <!-- do not reset a diverging simulation without notice -->
     <flag autoreset="disable"/>
   </option>
   <worldbody>
@@ -24,7 +24,7 @@ MODEL = """
 </mujoco>
 """
 
-os.chdir(tempfile.mkdtemp())  # MuJoCo writes its warnings into a file where it runs
+os.chdir(tempfile.mkdtemp())  # MuJoCo writes warnings to a file in the working directory
 for integrator in ("Euler", "implicitfast", "RK4"):
     for dt in STEPS:
         moments = " ".join(map(str, MOMENTS))
@@ -32,6 +32,6 @@ for integrator in ("Euler", "implicitfast", "RK4"):
             MODEL.format(dt=dt, integrator=integrator, moments=moments)
         )
         data = mujoco.MjData(model)
-        data.qvel[3:] = OMEGA  # MuJoCo keeps it along the body's axes
+        data.qvel[3:] = OMEGA  # in the body frame
         mujoco.mj_step(model, data, round(TIME / dt))
-        row(f"MuJoCo {mujoco.__version__}", integrator, dt, data.qpos[3:], data.qvel[3:])
+        print_row(f"MuJoCo {mujoco.__version__}", integrator, dt, data.qpos[3:], data.qvel[3:])

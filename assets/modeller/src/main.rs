@@ -1,7 +1,7 @@
-//! Models the meshes under `assets/`: a sitting cat.
+//! Models the mesh `assets/cat.obj`: a sitting cat.
 //!
-//! `cargo run -p tumble-modeller` writes `assets/cat.obj`; the same bytes on every machine, since
-//! only basic arithmetic, square roots and the `libm` crate are used.
+//! `cargo run -p tumble-modeller` writes the file. Its bytes are the same on every machine, because the program uses
+//! only basic arithmetic, square roots and the `libm` crate.
 
 mod cat;
 mod mesh;
@@ -19,8 +19,8 @@ use std::process::ExitCode;
 
 const USAGE: &str = "usage: tumble-modeller [--out FILE] [--check]
 
-  --out FILE  where to write the mesh (default: assets/cat.obj of this source tree)
-  --check     write nothing; fail if FILE differs from what would be written";
+  --out FILE  output file (default: assets/cat.obj of this source tree)
+  --check     write nothing; fail if FILE differs from the model";
 
 fn main() -> ExitCode {
     match run(std::env::args().skip(1)) {
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Follows the command line and says what it did.
+/// Carries out the command line; returns the message to print.
 fn run(mut arguments: impl Iterator<Item = String>) -> Result<String, String> {
     let mut out = concat!(env!("CARGO_MANIFEST_DIR"), "/../cat.obj").to_string();
     let mut check = false;
@@ -49,8 +49,8 @@ fn run(mut arguments: impl Iterator<Item = String>) -> Result<String, String> {
     }
 
     let solid = cat::solid();
-    let mesh = model(&solid)?;
-    let text = obj::write(&mesh, &solid);
+    let mesh = build_mesh(&solid)?;
+    let text = obj::to_obj(&mesh, &solid);
     let counts = format!(
         "{} vertices, {} triangles, volume {:.4}",
         mesh.points.len(),
@@ -58,9 +58,11 @@ fn run(mut arguments: impl Iterator<Item = String>) -> Result<String, String> {
         mesh.volume()
     );
     if check {
-        let found = std::fs::read_to_string(&out).map_err(|error| format!("{out}: {error}"))?;
-        if found != text {
-            return Err(format!("{out} differs from the model: run cargo run -p tumble-modeller"));
+        let existing = std::fs::read_to_string(&out).map_err(|error| format!("{out}: {error}"))?;
+        if existing != text {
+            return Err(format!(
+                "{out} differs from the model; `cargo run -p tumble-modeller` writes it again"
+            ));
         }
         return Ok(format!("{out} is up to date: {counts}"));
     }
@@ -68,11 +70,11 @@ fn run(mut arguments: impl Iterator<Item = String>) -> Result<String, String> {
     Ok(format!("{out}: {counts}"))
 }
 
-/// The finished mesh of the cat: two units tall, centred on its bounding box.
-fn model(solid: &Solid) -> Result<Mesh, String> {
+/// Triangulates a solid: a mesh two units tall, its bounding box centred on the origin.
+fn build_mesh(solid: &Solid) -> Result<Mesh, String> {
     let (low, high) = (DVec3::new(-1.0, -0.1, -1.1), DVec3::new(1.0, 2.3, 1.1));
     let mut mesh = polygonise::polygonise(solid, low, high, 0.03);
     remesh::remesh(&mut mesh, solid, cat::spacing)?;
-    mesh.fit(2.0);
+    mesh.scale_to_height(2.0);
     Ok(mesh)
 }

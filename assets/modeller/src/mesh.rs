@@ -1,26 +1,26 @@
-//! A triangle mesh, its edges, and the facts one can ask of it.
+//! Triangle meshes: edges, areas, volume.
 
 use glam::DVec3;
 
-/// Triangles over shared points, counter-clockwise seen from outside.
+/// A triangle mesh with shared vertices, counter-clockwise as seen from outside.
 #[derive(Default)]
 pub struct Mesh {
-    /// the vertices
+    /// Vertices.
     pub points: Vec<DVec3>,
-    /// three indices into `points` each
+    /// Three indices into `points` per triangle.
     pub triangles: Vec<[usize; 3]>,
 }
 
-/// An edge of a closed mesh, with `ends[0] < ends[1]`.
+/// An edge of a watertight mesh, with `ends[0] < ends[1]`.
 pub struct Edge {
-    /// the two vertices
+    /// The two vertices.
     pub ends: [usize; 2],
-    /// the triangle that runs along `ends`, then the one that runs against it
-    pub sides: [usize; 2],
+    /// The triangle whose winding runs from `ends[0]` to `ends[1]`, then the one with the opposite direction.
+    pub faces: [usize; 2],
 }
 
 impl Mesh {
-    /// Twice the area of a triangle, along its outward normal.
+    /// The outward normal of a triangle, with twice its area as length.
     pub fn area_vector(&self, [a, b, c]: [usize; 3]) -> DVec3 {
         let [a, b, c] = [self.points[a], self.points[b], self.points[c]];
         (b - a).cross(c - a)
@@ -32,42 +32,44 @@ impl Mesh {
         self.points[edge.ends[0]].distance(self.points[edge.ends[1]])
     }
 
-    /// All edges, sorted by their ends; an error names the first edge that is not shared by
-    /// exactly two triangles in opposite directions.
+    /// All edges, sorted by their vertices.
+    ///
+    /// # Errors
+    /// If an edge is not shared by exactly two triangles in opposite directions.
     pub fn edges(&self) -> Result<Vec<Edge>, String> {
-        let mut halves = Vec::with_capacity(3 * self.triangles.len());
-        for (side, &[a, b, c]) in self.triangles.iter().enumerate() {
+        let mut half_edges = Vec::with_capacity(3 * self.triangles.len());
+        for (face, &[a, b, c]) in self.triangles.iter().enumerate() {
             for [from, to] in [[a, b], [b, c], [c, a]] {
-                halves.push(([from.min(to), from.max(to)], from > to, side));
+                half_edges.push(([from.min(to), from.max(to)], from > to, face));
             }
         }
-        halves.sort_unstable();
-        let pair_up = |pair: &[([usize; 2], bool, usize)]| match *pair {
-            [(ends, false, with), (other, true, against)] if ends == other => {
-                Ok(Edge { ends, sides: [with, against] })
+        half_edges.sort_unstable();
+        let join = |pair: &[([usize; 2], bool, usize)]| match *pair {
+            [(ends, false, forward), (other, true, backward)] if ends == other => {
+                Ok(Edge { ends, faces: [forward, backward] })
             }
             _ => Err(format!("edge {:?} does not join two triangles", pair[0].0)),
         };
-        let edges = halves.chunks(2).map(pair_up).collect::<Result<Vec<_>, _>>()?;
+        let edges = half_edges.chunks(2).map(join).collect::<Result<Vec<_>, _>>()?;
         match edges.windows(2).find(|pair| pair[0].ends == pair[1].ends) {
             Some(pair) => Err(format!("edge {:?} joins four triangles", pair[0].ends)),
             None => Ok(edges),
         }
     }
 
-    /// For each vertex, the triangles around it.
-    pub fn rings(&self) -> Vec<Vec<usize>> {
-        let mut rings = vec![Vec::new(); self.points.len()];
-        for (side, triangle) in self.triangles.iter().enumerate() {
-            for &corner in triangle {
-                rings[corner].push(side);
+    /// The triangles around each vertex.
+    pub fn vertex_faces(&self) -> Vec<Vec<usize>> {
+        let mut vertex_faces = vec![Vec::new(); self.points.len()];
+        for (face, triangle) in self.triangles.iter().enumerate() {
+            for &vertex in triangle {
+                vertex_faces[vertex].push(face);
             }
         }
-        rings
+        vertex_faces
     }
 
-    /// Scales and moves the mesh so that its bounding box is `height` tall and centred.
-    pub fn fit(&mut self, height: f64) {
+    /// Scales the mesh to the given height and centres its bounding box on the origin.
+    pub fn scale_to_height(&mut self, height: f64) {
         let low = self.points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = self.points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let (centre, scale) = (0.5 * (low + high), height / (high.y - low.y));
@@ -76,20 +78,20 @@ impl Mesh {
         }
     }
 
-    /// The enclosed volume; negative if the triangles face inwards.
+    /// The enclosed volume, which is negative if the triangles face inwards.
     pub fn volume(&self) -> f64 {
         let corners = self.triangles.iter().map(|triangle| triangle.map(|c| self.points[c]));
         corners.map(|[a, b, c]| a.dot(b.cross(c))).sum::<f64>() / 6.0
     }
 
-    /// The sharpest corner of a triangle, in degrees.
+    /// The smallest angle of a triangle (degrees).
     #[cfg(test)]
-    pub fn sharpest_angle(&self, [a, b, c]: [usize; 3]) -> f64 {
-        let doubled = self.area_vector([a, b, c]).length();
-        let corner = |apex: usize, from: usize, to: usize| {
+    pub fn smallest_angle(&self, [a, b, c]: [usize; 3]) -> f64 {
+        let twice_area = self.area_vector([a, b, c]).length();
+        let angle = |apex: usize, from: usize, to: usize| {
             let arms = (self.points[from] - self.points[apex], self.points[to] - self.points[apex]);
-            libm::atan2(doubled, arms.0.dot(arms.1)).to_degrees()
+            libm::atan2(twice_area, arms.0.dot(arms.1)).to_degrees()
         };
-        corner(a, b, c).min(corner(b, c, a)).min(corner(c, a, b))
+        angle(a, b, c).min(angle(b, c, a)).min(angle(c, a, b))
     }
 }

@@ -1,4 +1,4 @@
-//! Wavefront OBJ text.
+//! Export as Wavefront OBJ.
 
 use crate::mesh::Mesh;
 use crate::solid::Solid;
@@ -8,12 +8,12 @@ const HEADER: &str = "# a sitting cat: closed surface, y up, facing +z, 2 units 
 # modelled by assets/modeller: cargo run -p tumble-modeller
 # licence: MIT OR Apache-2.0";
 
-/// The mesh as OBJ text, at most six decimals a coordinate; the header names the model's parts.
-pub fn write(mesh: &Mesh, solid: &Solid) -> String {
+/// The mesh as OBJ text with up to six decimals per coordinate. The header lists the parts of the model.
+pub fn to_obj(mesh: &Mesh, solid: &Solid) -> String {
     let names: Vec<&str> = solid.parts.iter().map(|part| part.name).collect();
     let mut text = format!("{HEADER}\n# parts: {}\no cat\n", names.join(", "));
     for point in &mesh.points {
-        let [x, y, z] = point.to_array().map(decimal);
+        let [x, y, z] = point.to_array().map(format_decimal);
         // writing to a string cannot fail
         let _ = writeln!(text, "v {x} {y} {z}");
     }
@@ -23,9 +23,9 @@ pub fn write(mesh: &Mesh, solid: &Solid) -> String {
     text
 }
 
-/// Six decimals, without trailing zeros or a signed zero.
-fn decimal(value: f64) -> String {
-    let fixed = format!("{value:.6}");
-    let short = fixed.trim_end_matches('0').trim_end_matches('.');
-    if short == "-0" { "0".to_string() } else { short.to_string() }
+/// Formats a number with up to six decimals, without trailing zeros and without a negative zero.
+fn format_decimal(value: f64) -> String {
+    let padded = format!("{value:.6}");
+    let trimmed = padded.trim_end_matches('0').trim_end_matches('.');
+    if trimmed == "-0" { "0".to_string() } else { trimmed.to_string() }
 }

@@ -1,81 +1,81 @@
-//! Implicit solids: round primitives, joined and carved with soft seams.
+//! Implicit solids: smooth unions and differences of rounded primitives.
 //!
-//! A field is negative inside, positive outside and zero on the surface. It is a signed distance
-//! only roughly (ellipsoids and blends bend it), which is enough: whoever walks to the surface
-//! takes Newton steps along the gradient.
+//! The field is negative inside, positive outside and zero on the surface. It only approximates a signed distance,
+//! because ellipsoids and smooth blends distort it. This suffices: points are projected onto the surface by Newton steps
+//! along the gradient.
 
 use glam::{DMat3, DVec3};
 
-/// One primitive.
+/// A primitive.
 pub enum Shape {
-    /// centre, radii, and the rotation from the model's axes to the ellipsoid's own
+    /// An ellipsoid; `to_local` rotates from the model's axes to its own.
     Ellipsoid { centre: DVec3, radii: DVec3, to_local: DMat3 },
-    /// a path of (point, radius) pairs swept by a ball; two pairs make a round cone
+    /// A chain of round cones through (point, radius) pairs.
     Path(Vec<(DVec3, f64)>),
-    /// a triangular plate with a rounded rim
+    /// A triangular plate with a rounded rim.
     Plate { corners: [DVec3; 3], radius: f64 },
 }
 
-/// What a part does to the parts before it.
+/// The Boolean operation that combines a part with the parts before it.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Act {
-    /// adds material
-    Join,
-    /// takes material away
-    Carve,
+pub enum Operation {
+    /// Adds material.
+    Union,
+    /// Removes material.
+    Difference,
 }
 
-/// A named primitive with the way it meets the rest.
+/// A named primitive and how it combines with the parts before it.
 pub struct Part {
-    /// for the reader of the table and of the written file
+    /// Name, also listed in the header of the file.
     pub name: &'static str,
-    /// the primitive
+    /// The primitive.
     pub shape: Shape,
-    /// join or carve
-    pub act: Act,
-    /// width of the soft seam to what came before
+    /// Union or difference.
+    pub operation: Operation,
+    /// Width of the smooth blend with the parts before it.
     pub blend: f64,
-    /// whether the part has a twin at −x
+    /// Whether the part also has a mirror image at −x.
     pub mirrored: bool,
 }
 
-/// A list of parts, applied in order, standing on the ground plane y = 0.
+/// A solid on the ground plane y = 0.
 pub struct Solid {
-    /// in the order in which they are joined or carved
+    /// The parts, in the order in which they apply.
     pub parts: Vec<Part>,
-    /// width of the rounding where the solid meets the ground
+    /// Width of the rounded edge at the ground.
     pub ground_blend: f64,
 }
 
 impl Solid {
-    /// The field at `point`: negative inside.
+    /// The field at `point`.
     pub fn field(&self, point: DVec3) -> f64 {
-        let twin = DVec3::new(-point.x, point.y, point.z);
-        // far outside until the first part joins
+        let mirrored = DVec3::new(-point.x, point.y, point.z);
+        // far outside before the first part
         let mut value = 1e3;
         for part in &self.parts {
             value = part.apply(value, point);
             if part.mirrored {
-                value = part.apply(value, twin);
+                value = part.apply(value, mirrored);
             }
         }
-        // the ground cuts a flat seat
-        soft_max(value, -point.y, self.ground_blend)
+        // cut the solid flat at the ground
+        smooth_max(value, -point.y, self.ground_blend)
     }
 
-    /// The gradient of the field at `point`, from differences over a small tetrahedron.
+    /// The gradient of the field at `point`, by finite differences over a small tetrahedron.
     pub fn gradient(&self, point: DVec3) -> DVec3 {
-        const ARMS: [DVec3; 4] = [
+        const DIRECTIONS: [DVec3; 4] = [
             DVec3::new(1.0, -1.0, -1.0),
             DVec3::new(-1.0, 1.0, -1.0),
             DVec3::new(-1.0, -1.0, 1.0),
             DVec3::new(1.0, 1.0, 1.0),
         ];
         let h = 1e-5;
-        ARMS.iter().map(|&arm| self.field(point + h * arm) * arm).sum::<DVec3>() / (4.0 * h)
+        DIRECTIONS.iter().map(|&d| self.field(point + h * d) * d).sum::<DVec3>() / (4.0 * h)
     }
 
-    /// The surface point that Newton steps along the gradient lead to.
+    /// Projects a point onto the surface by Newton steps along the gradient.
     pub fn project(&self, start: DVec3) -> DVec3 {
         let mut point = start;
         for _ in 0..8 {
@@ -83,7 +83,7 @@ impl Solid {
             if libm::fabs(value) < 1e-9 {
                 break;
             }
-            // a step longer than a cell would jump to another limb
+            // a step longer than a grid cell could reach another part of the body
             let gradient = self.gradient(point);
             let step = -value / gradient.length_squared().max(1e-6) * gradient;
             point += step.clamp_length_max(0.03);
@@ -95,9 +95,9 @@ impl Solid {
 impl Part {
     fn apply(&self, value: f64, point: DVec3) -> f64 {
         let distance = self.shape.distance(point);
-        match self.act {
-            Act::Join => soft_min(value, distance, self.blend),
-            Act::Carve => soft_max(value, -distance, self.blend),
+        match self.operation {
+            Operation::Union => smooth_min(value, distance, self.blend),
+            Operation::Difference => smooth_max(value, -distance, self.blend),
         }
     }
 }
@@ -117,39 +117,38 @@ impl Shape {
     }
 }
 
-/// The smaller of two fields, with a round fillet of width `blend` where they are close
-/// (the polynomial smooth minimum of Quilez).
-pub fn soft_min(a: f64, b: f64, blend: f64) -> f64 {
+/// Smooth minimum of two fields with a fillet of width `blend` (Quilez, polynomial smooth minimum).
+pub fn smooth_min(a: f64, b: f64, blend: f64) -> f64 {
     let overlap = (blend - libm::fabs(a - b)).max(0.0);
     a.min(b) - overlap * overlap / (4.0 * blend)
 }
 
-/// The larger of two fields, with a round edge of width `blend`.
-pub fn soft_max(a: f64, b: f64, blend: f64) -> f64 {
-    -soft_min(-a, -b, blend)
+/// Smooth maximum of two fields with a rounded edge of width `blend`.
+pub fn smooth_max(a: f64, b: f64, blend: f64) -> f64 {
+    -smooth_min(-a, -b, blend)
 }
 
-/// First-order distance to an axis-aligned ellipsoid at the origin.
+/// First-order approximation of the signed distance to an axis-aligned ellipsoid at the origin.
 fn ellipsoid_distance(point: DVec3, radii: DVec3) -> f64 {
     let scaled = (point / radii).length();
     let slope = (point / (radii * radii)).length();
     if slope < 1e-12 { -radii.min_element() } else { scaled * (scaled - 1.0) / slope }
 }
 
-/// Distance to a ball whose radius and centre slide from one knot to the next.
+/// Approximate signed distance to a round cone, whose radius varies linearly from one end to the other.
 fn cone_distance(point: DVec3, from: (DVec3, f64), to: (DVec3, f64)) -> f64 {
     let axis = to.0 - from.0;
-    let along = ((point - from.0).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
-    (point - from.0 - along * axis).length() - (from.1 + along * (to.1 - from.1))
+    let fraction = ((point - from.0).dot(axis) / axis.length_squared()).clamp(0.0, 1.0);
+    (point - from.0 - fraction * axis).length() - (from.1 + fraction * (to.1 - from.1))
 }
 
-/// Distance to a flat triangle.
+/// Distance to a triangle.
 fn triangle_distance(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
     let normal = (b - a).cross(c - a);
-    let beyond = |from: DVec3, to: DVec3| (to - from).cross(normal).dot(point - from) > 0.0;
-    if beyond(a, b) || beyond(b, c) || beyond(c, a) {
-        let edge = |from, to| cone_distance(point, (from, 0.0), (to, 0.0));
-        edge(a, b).min(edge(b, c)).min(edge(c, a))
+    let outside = |from: DVec3, to: DVec3| (to - from).cross(normal).dot(point - from) > 0.0;
+    if outside(a, b) || outside(b, c) || outside(c, a) {
+        let edge_distance = |from, to| cone_distance(point, (from, 0.0), (to, 0.0));
+        edge_distance(a, b).min(edge_distance(b, c)).min(edge_distance(c, a))
     } else {
         libm::fabs(normal.dot(point - a)) / normal.length()
     }

@@ -1,44 +1,44 @@
-//! What the cat promises to those who simulate it.
+//! Properties of the cat mesh that simulations rely on.
 
-use crate::{cat, mesh::Mesh, model, obj};
+use crate::{build_mesh, cat, mesh::Mesh, obj};
 use glam::DVec3;
 use std::sync::LazyLock;
 
-/// Modelled once for all tests.
-static CAT: LazyLock<Mesh> = LazyLock::new(|| model(&cat::solid()).unwrap());
+/// The mesh, built once for all tests.
+static CAT: LazyLock<Mesh> = LazyLock::new(|| build_mesh(&cat::solid()).unwrap());
 
 #[test]
-fn every_edge_joins_two_triangles_that_agree_on_outside() {
+fn the_mesh_is_watertight_and_faces_outwards() {
     CAT.edges().unwrap();
     assert!(CAT.volume() > 0.0, "the triangles face inwards");
 }
 
 #[test]
-fn the_surface_is_one_ball_without_handles() {
+fn the_surface_is_connected_and_has_genus_zero() {
     let edges = CAT.edges().unwrap();
     assert_eq!(CAT.points.len() + CAT.triangles.len(), edges.len() + 2);
 
-    // walk from the first vertex along edges until nothing new turns up
-    let mut reached = vec![false; CAT.points.len()];
-    reached[0] = true;
-    let mut news = true;
-    while news {
-        news = false;
+    // visit all vertices that are connected to the first one
+    let mut visited = vec![false; CAT.points.len()];
+    visited[0] = true;
+    let mut changed = true;
+    while changed {
+        changed = false;
         for [a, b] in edges.iter().map(|edge| edge.ends) {
-            news |= reached[a] != reached[b];
-            reached[a] |= reached[b];
-            reached[b] = reached[a];
+            changed |= visited[a] != visited[b];
+            visited[a] |= visited[b];
+            visited[b] = visited[a];
         }
     }
-    assert!(reached.iter().all(|&reached| reached));
+    assert!(visited.iter().all(|&visited| visited));
 }
 
 #[test]
 fn the_triangles_around_a_vertex_form_one_fan() {
-    for (vertex, ring) in CAT.rings().into_iter().enumerate() {
-        // in a single fan, the outer edges of the triangles close up after all of them
-        let outer = |side: usize| {
-            let [a, b, c] = CAT.triangles[side];
+    for (vertex, faces) in CAT.vertex_faces().into_iter().enumerate() {
+        // the edges opposite the vertex form one closed loop
+        let opposite_edge = |face: usize| {
+            let [a, b, c] = CAT.triangles[face];
             if a == vertex {
                 (b, c)
             } else if b == vertex {
@@ -47,31 +47,32 @@ fn the_triangles_around_a_vertex_form_one_fan() {
                 (a, b)
             }
         };
-        let (start, mut at) = outer(ring[0]);
+        let (start, mut current) = opposite_edge(faces[0]);
         let mut count = 1;
-        while at != start {
-            at = ring.iter().map(|&side| outer(side)).find(|&(from, _)| from == at).unwrap().1;
+        while current != start {
+            let mut edges = faces.iter().map(|&face| opposite_edge(face));
+            current = edges.find(|&(from, _)| from == current).unwrap().1;
             count += 1;
         }
-        assert_eq!(count, ring.len(), "vertex {vertex}");
+        assert_eq!(count, faces.len(), "vertex {vertex}");
     }
 }
 
 #[test]
-fn there_are_about_four_thousand_vertices() {
+fn the_mesh_has_about_four_thousand_vertices() {
     assert!((3_700..=4_300).contains(&CAT.points.len()), "{}", CAT.points.len());
 }
 
 #[test]
-fn no_triangle_is_a_sliver() {
-    let sharpest = CAT.triangles.iter().map(|&t| CAT.sharpest_angle(t)).fold(180.0, f64::min);
-    assert!(sharpest > 20.0, "{sharpest} degrees");
+fn no_triangle_is_degenerate() {
+    let smallest = CAT.triangles.iter().map(|&t| CAT.smallest_angle(t)).fold(180.0, f64::min);
+    assert!(smallest > 20.0, "{smallest} degrees");
     let shortest = CAT.edges().unwrap().iter().map(|edge| CAT.length(edge)).fold(1.0, f64::min);
     assert!(shortest > 0.01, "{shortest}");
 }
 
 #[test]
-fn the_cat_fits_its_box() {
+fn the_bounding_box_is_centred_and_two_units_tall() {
     let low = CAT.points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = CAT.points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
     assert!((low + high).length() < 1e-12, "the bounding box is centred");
@@ -81,7 +82,7 @@ fn the_cat_fits_its_box() {
 }
 
 #[test]
-fn the_cat_sits_without_falling_over() {
+fn the_centre_of_mass_lies_above_the_base() {
     // the centre of mass of the enclosed volume, from tetrahedra with their apex at the origin
     let moment: DVec3 = CAT
         .triangles
@@ -91,14 +92,14 @@ fn the_cat_sits_without_falling_over() {
         .sum();
     let centre = moment / CAT.volume();
 
-    // in every direction along the ground some touching vertex lies well beyond the centre
-    let touching: Vec<DVec3> = CAT.points.iter().copied().filter(|p| p.y < -1.0 + 1e-4).collect();
-    assert!(touching.len() > 150, "{} vertices touch the ground", touching.len());
+    // in every horizontal direction, the base extends well beyond the centre of mass
+    let base: Vec<DVec3> = CAT.points.iter().copied().filter(|p| p.y < -1.0 + 1e-4).collect();
+    assert!(base.len() > 150, "{} vertices touch the ground", base.len());
     for step in 0..32 {
         let (sine, cosine) = libm::sincos(f64::from(step) / 32.0 * std::f64::consts::TAU);
         let direction = DVec3::new(cosine, 0.0, sine);
-        let reach = touching.iter().map(|&p| (p - centre).dot(direction)).fold(-1.0, f64::max);
-        assert!(reach > 0.2, "reach {reach} towards {direction}");
+        let extent = base.iter().map(|&p| (p - centre).dot(direction)).fold(-1.0, f64::max);
+        assert!(extent > 0.2, "{extent} towards {direction}");
     }
 }
 
@@ -112,9 +113,9 @@ fn parts_have_distinct_names() {
 }
 
 #[test]
-fn the_file_in_the_tree_is_what_the_program_writes() {
+fn cat_obj_is_up_to_date() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../cat.obj");
-    // not assert_eq: the texts are long
-    let same = std::fs::read_to_string(file).unwrap() == obj::write(&CAT, &cat::solid());
-    assert!(same, "run cargo run -p tumble-modeller");
+    // assert_eq would print both files
+    let same = std::fs::read_to_string(file).unwrap() == obj::to_obj(&CAT, &cat::solid());
+    assert!(same, "cat.obj differs from the model; `cargo run -p tumble-modeller` writes it again");
 }

@@ -1,33 +1,33 @@
-//! `cargo bench --bench heaps`: heaps of clumps at rest, from 1000 to 100,000, as Markdown on standard output.
+//! `cargo bench --bench heaps`: heaps of 1000 to 100,000 clumps at rest; writes Markdown to standard output.
 
 use std::error::Error;
 
-use tumble_bench::{heaps, machine};
+use tumble_bench::{describe_machine, measure_heaps};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // `cargo test --benches` is no time to measure
+    // do not measure under `cargo test --benches`
     if !std::env::args().any(|arg| arg == "--bench") {
         return Ok(());
     }
-    println!("{}\n", machine());
+    println!("{}\n", describe_machine());
     println!(
-        "| clumps | springs a clump | one thread (ns a clump and step) | two threads | one ÷ two | memory a clump (kB) |"
+        "| clumps | springs per clump | one thread (ns per clump and step) | two threads | one ÷ two | memory per clump (kB) |"
     );
     println!("|---|---|---|---|---|---|");
-    for cost in heaps(&[1, 8, 100])? {
+    for cost in measure_heaps(&[1, 8, 100])? {
         println!(
             "| {} | {:.2} | {:.0} | {:.0} | {:.2} | {} |",
             cost.clumps,
-            cost.springs,
-            cost.alone,
-            cost.together,
-            cost.gain,
-            memory(cost.memory),
+            cost.springs_per_clump,
+            cost.one_thread,
+            cost.two_threads,
+            cost.speedup,
+            format_kilobytes(cost.memory_per_clump),
         );
     }
     Ok(())
 }
 
-fn memory(bytes: f64) -> String {
+fn format_kilobytes(bytes: f64) -> String {
     if bytes.is_nan() { "–".to_owned() } else { format!("{:.1}", 1e-3 * bytes) }
 }

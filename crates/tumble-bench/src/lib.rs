@@ -1,13 +1,15 @@
-//! What `cargo bench` measures: tumble beside a plain loop over particles, in turns.
+//! The measurements behind `cargo bench`: tumble compared with a plain loop over particles, heaps of clumps, and complete runs.
 
+mod full_run;
 mod heaps;
+mod machine;
 mod plain_loop;
-mod rounds;
-mod runs;
-mod trial;
+mod single_body;
+mod timing;
 
-pub use heaps::{HeapCost, heaps};
-pub use plain_loop::{PlainLoop, Style};
-pub use rounds::side_by_side;
-pub use runs::{Run, machine, wall_seconds};
-pub use trial::{Motion, Trial, fibonacci_sphere, sphere_mesh};
+pub use full_run::{RunTime, time_run};
+pub use heaps::{HeapCost, measure_heaps};
+pub use machine::describe_machine;
+pub use plain_loop::{LoopStyle, PlainLoop};
+pub use single_body::{Motion, SingleBodyBenchmark, sphere_mesh};
+pub use timing::time_in_turns;

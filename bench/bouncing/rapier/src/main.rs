@@ -1,15 +1,15 @@
-//! A body that bounces in a closed box, in Rapier.
+//! Simulates a body that bounces in a closed box with Rapier.
 //!
-//! `bouncing-rapier time|look f32|f64 trimesh|hull|parts FOLDER START… END…`: FOLDER holds what `body.py`
-//! writes; START is position, velocity and angular velocity; ENDs are the ends of the phases (s).
+//! `bouncing-rapier time|states f32|f64 trimesh|hull|parts FOLDER START… END…`: FOLDER holds the output of `body.py`;
+//! START is position, velocity and angular velocity; ENDs are the ends of the phases (s).
 //!
-//! `time` prints the seconds spent in the steps of each phase. `look` prints position, w x y z,
+//! `time` prints the seconds spent in the steps of each phase. `states` prints position, orientation (w x y z),
 //! velocity, angular velocity and the number of contact points in the solver after every step.
 
 use std::collections::HashMap;
 use std::time::Instant;
 
-/// What `body.py` writes.
+/// The output of `body.py`.
 struct Input {
     points: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
@@ -19,7 +19,8 @@ struct Input {
 impl Input {
     fn read(folder: &str) -> Self {
         let read = |name: &str| {
-            std::fs::read_to_string(format!("{folder}/{name}")).expect("body.py has written it")
+            std::fs::read_to_string(format!("{folder}/{name}"))
+                .expect("FOLDER holds the output of body.py")
         };
         let (obj, setup) = (read("body.obj"), read("setup.txt"));
         let rows = |key: &'static str| {
@@ -51,37 +52,37 @@ fn triple(row: impl Iterator<Item = f64>) -> [f64; 3] {
     row.collect::<Vec<_>>().try_into().expect("three numbers")
 }
 
-/// The same program for both precisions: the two crates differ in their scalar only.
-macro_rules! bounce {
-    ($rapier:ident, $real:ty, $look:expr, $shape:expr, $input:expr, $start:expr, $ends:expr) => {{
+/// The simulation for either precision: the two crates have the same interface.
+macro_rules! simulate {
+    ($rapier:ident, $real:ty, $print_states:expr, $shape:expr, $input:expr, $start:expr, $ends:expr) => {{
         use $rapier::prelude::*;
         let input: &Input = $input;
         let get = |key: &str| input.get(key) as $real;
         let vector = |v: &[f64]| Vector::new(v[0] as $real, v[1] as $real, v[2] as $real);
         let (mut bodies, mut colliders) = (RigidBodySet::new(), ColliderSet::new());
 
-        // six thick walls about a cube
-        let (box_, thick) = (get("box"), 0.5);
+        // six thick walls around a cube
+        let (box_, thickness) = (get("box"), 0.5);
         let material = |collider: ColliderBuilder| {
             collider.restitution(get("restitution")).friction(get("friction"))
         };
         for axis in 0..3 {
             for side in [-1.0, 1.0] {
-                let (mut half, mut centre) = ([box_ + 2.0 * thick; 3], [0.0; 3]);
-                (half[axis], centre[axis]) = (thick, side * (box_ + thick));
+                let (mut half, mut centre) = ([box_ + 2.0 * thickness; 3], [0.0; 3]);
+                (half[axis], centre[axis]) = (thickness, side * (box_ + thickness));
                 let wall = ColliderBuilder::cuboid(half[0], half[1], half[2])
                     .translation(Vector::new(centre[0], centre[1], centre[2]));
                 colliders.insert(material(wall));
             }
         }
 
-        // the body: its mass properties are given, none come from the shape
+        // the mass properties are given; the shape has no density
         let points: Vec<_> = input.points.iter().map(|p| vector(p)).collect();
         let shape = match $shape {
             "trimesh" => ColliderBuilder::trimesh(points, input.triangles.clone()).expect("a mesh"),
             "hull" => ColliderBuilder::convex_hull(&points).expect("a hull"),
             "parts" => ColliderBuilder::convex_decomposition(&points, &input.triangles),
-            other => panic!("{other}: trimesh, hull or parts"),
+            other => panic!("unknown shape {other}: use trimesh, hull or parts"),
         };
         let start: &[f64] = $start;
         let body = RigidBodyBuilder::dynamic()
@@ -127,7 +128,7 @@ macro_rules! bounce {
                     &(),
                 );
                 step += 1;
-                if $look {
+                if $print_states {
                     let contacts: usize = narrow
                         .contact_pairs()
                         .flat_map(|pair| pair.solver_manifolds())
@@ -144,7 +145,7 @@ macro_rules! bounce {
                     println!("{contacts}");
                 }
             }
-            if !$look {
+            if !$print_states {
                 println!("{:?}", clock.elapsed().as_secs_f64());
             }
         }
@@ -153,14 +154,14 @@ macro_rules! bounce {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let look = arguments[0] == "look";
+    let print_states = arguments[0] == "states";
     let shape = arguments[2].as_str();
     let input = Input::read(&arguments[3]);
     let numbers: Vec<f64> = arguments[4..].iter().map(|word| number(word)).collect();
     let (start, ends) = numbers.split_at(9);
     match arguments[1].as_str() {
-        "f32" => bounce!(single, f32, look, shape, &input, start, ends),
-        "f64" => bounce!(double, f64, look, shape, &input, start, ends),
-        other => panic!("{other}: f32 or f64"),
+        "f32" => simulate!(single, f32, print_states, shape, &input, start, ends),
+        "f64" => simulate!(double, f64, print_states, shape, &input, start, ends),
+        other => panic!("unknown precision {other}: use f32 or f64"),
     }
 }

@@ -1,8 +1,8 @@
-//! Free tumbling in Rapier: `tumbling-rapier f32|f64 DT` prints w x y z and the world's ωx ωy ωz
-//! after 20 s.
+//! Simulates free tumbling with Rapier: `tumbling-rapier f32|f64 DT` prints the orientation (w x y z) and the angular
+//! velocity in the world frame after 20 s.
 
-/// The same program for both precisions: the two crates differ in their scalar only.
-macro_rules! tumble {
+/// The simulation for either precision: the two crates have the same interface.
+macro_rules! simulate {
     ($rapier:ident, $real:ty, $dt:expr) => {{
         use $rapier::prelude::*;
         let body = RigidBodyBuilder::dynamic()
@@ -12,7 +12,7 @@ macro_rules! tumble {
                 Vector::new(1.0, 2.0, 3.0),
             ))
             .angvel(Vector::new(0.01, 5.0, 0.01))
-            // the default, said since the whole motion hangs on it
+            // the default, set explicitly because the motion depends on it
             .gyroscopic_forces_enabled(true)
             .linear_damping(0.0)
             .angular_damping(0.0)
@@ -55,8 +55,8 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let dt: f64 = arguments[1].parse().expect("DT is a number of seconds");
     match arguments[0].as_str() {
-        "f32" => tumble!(single, f32, dt),
-        "f64" => tumble!(double, f64, dt),
-        other => panic!("{other}: f32 or f64"),
+        "f32" => simulate!(single, f32, dt),
+        "f64" => simulate!(double, f64, dt),
+        other => panic!("unknown precision {other}: use f32 or f64"),
     }
 }
