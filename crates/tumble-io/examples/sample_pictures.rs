@@ -129,7 +129,7 @@ fn draw(folder: &Path, sample: &Sample, size: (u32, u32)) -> Result<(), Box<dyn 
             name,
             vertices,
             triangles,
-            is_driven: false,
+            is_kinematic: false,
         })
         .collect();
     let picture = MotionPicture {

@@ -8,7 +8,7 @@ use super::recorder::Recorder;
 use super::resume::ResumeError;
 use super::rows::{RowError, Rows, parse_contact, parse_ledger, parse_trajectory};
 use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
-use crate::page::{BodyFrame, Film};
+use crate::page::{BodyFrame, Recording};
 use crate::picture::{Frame, Pose};
 use crate::scene::Scene;
 
@@ -24,7 +24,7 @@ pub(super) struct History {
     /// What the pictures need of it.
     pub recorder: Recorder,
     /// What the page needs of it.
-    pub film: Film,
+    pub film: Recording,
 }
 
 impl History {
@@ -45,7 +45,7 @@ impl History {
         let mut ledger = Rows::open(folder.file(LEDGER), ledger_header(has_work))?;
         let mut contacts = Contacts::open(folder)?;
         let mut recorder = Recorder::new(world.body_count());
-        let mut film = Film::new(world.body_count());
+        let mut film = Recording::new(world.body_count());
         let last = world.state().step;
         let mut row = ledger.next()?.map(parse).transpose();
         // a run that lost its first rows begins with a later frame

@@ -14,7 +14,7 @@ use super::recorder::Recorder;
 use super::scribe::{Files, Memory, Moment, Scribe, still};
 use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
 use crate::checkpoint;
-use crate::page::{self, BodyFrame, Film};
+use crate::page::{self, BodyFrame};
 use crate::plot::{EnergyRow, energy_svg};
 use crate::scene::Scene;
 
@@ -51,7 +51,7 @@ impl<'a> Recording<'a> {
             has_work: scene.does_work(),
         };
         let bodies = world.body_count();
-        let memory = Memory { recorder: Recorder::new(bodies), film: Film::new(bodies) };
+        let memory = Memory { recorder: Recorder::new(bodies), film: page::Recording::new(bodies) };
         let scribe = Scribe::start(folder, files, memory, names(world));
         Ok(Self::of(folder, scribe, scene, start))
     }
@@ -138,7 +138,7 @@ impl<'a> Recording<'a> {
         let png = motion_picture(scene, world, &frames)
             .map_err(|error| draw("motion.png", error.to_string()))?;
         self.folder.write("motion.png", &png)?;
-        let html = page::motion_html(&page::Head::of(scene, world), &film);
+        let html = page::motion_html(&page::Header::new(scene, world), &film);
         self.folder.write("motion.html", html.as_bytes())?;
         Ok(row)
     }

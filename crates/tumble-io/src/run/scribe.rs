@@ -10,7 +10,7 @@ use super::folder::{CONTACTS, LEDGER, RunError, RunFolder, TRAJECTORY};
 use super::ledger::write_ledger;
 use super::recorder::Recorder;
 use super::trajectory::{write_contacts, write_frame};
-use crate::page::{BodyFrame, Film};
+use crate::page::{BodyFrame, Recording};
 use crate::picture::{Frame, Pose};
 use crate::plot::EnergyRow;
 
@@ -31,7 +31,7 @@ pub(super) struct Files {
 /// What the pictures need.
 pub(super) struct Memory {
     pub recorder: Recorder,
-    pub film: Film,
+    pub film: Recording,
 }
 
 /// One frame, to be written.
