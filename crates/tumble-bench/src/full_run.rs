@@ -31,7 +31,7 @@ pub fn time_run(scene: &str, duration: f64) -> Result<RunTime, Box<dyn Error>> {
     let folder = RunFolder::create(&folder.path().join("run"), false)?;
     let finished = run(loaded, &folder, &mut |_| true)?;
     let total = start.elapsed().as_secs_f64();
-    let rows = std::fs::read_to_string(folder.file("energy.csv"))?;
+    let rows = std::fs::read_to_string(folder.file_path("energy.csv"))?;
     Ok(RunTime {
         steps: finished.summary.steps,
         frames: rows.lines().count() as u64 - 1,

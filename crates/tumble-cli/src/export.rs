@@ -76,7 +76,7 @@ fn failure(error: &ExportError) -> Failure {
         print_error(&error.to_string());
         return Failure::Interrupted;
     }
-    if error.is_wrong_call() {
+    if error.is_invalid_request() {
         Failure::call(error)
     } else {
         Failure::Run(format!("error: {error}"))

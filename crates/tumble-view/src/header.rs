@@ -1,13 +1,13 @@
 //! The header of a live session: what a page needs before the first frame.
 
-use tumble_io::page::Head;
+use tumble_io::page::Header;
 
 use crate::Session;
 use crate::parameters::parameters;
 
 /// The header as JSON, in the format of `motion.html`, with the list of sliders.
 pub fn json(session: &Session) -> String {
-    let mut header = Head::of(session.scene(), session.world());
+    let mut header = Header::new(session.scene(), session.world());
     header.live = true;
     header.parameters = parameters(session.next_scene());
     header.to_json()

@@ -1,40 +1,44 @@
-//! Why an export is not there.
+//! Errors of exports.
 
 use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// Why an export is not there.
+/// Why an export failed.
 #[derive(Debug)]
 pub enum ExportError {
-    /// The ending of this file is no format.
-    Ending(PathBuf),
-    /// An option is impossible, alone or with this format.
+    /// The extension of this file names no format.
+    Extension(PathBuf),
+    /// An option is invalid, or the format does not support it.
     Option(String),
-    /// The file or folder is there already.
-    Taken(PathBuf),
-    /// No recorded frame is meant.
+    /// The file or folder exists already.
+    Exists(PathBuf),
+    /// No recorded frame is selected.
     NoFrames(String),
-    /// The format cannot hold this.
-    Unfit(String),
+    /// The format cannot represent the run.
+    Unsupported(String),
     /// A file cannot be written.
     Write(PathBuf, io::Error),
-    /// The program `ffmpeg` is not there.
+    /// The program `ffmpeg` is not installed.
     NoFfmpeg,
-    /// What `ffmpeg` said when it failed.
+    /// `ffmpeg` failed, with this error message.
     Ffmpeg(String),
-    /// A picture cannot be drawn.
+    /// An image cannot be drawn.
     Draw(String),
-    /// The caller said no.
+    /// The caller stopped the export.
     Stopped,
 }
 
 impl ExportError {
-    /// Whether the caller asked for something that cannot be, so that nothing went wrong.
-    pub fn is_wrong_call(&self) -> bool {
+    /// Whether the request was invalid, as opposed to a failure while writing.
+    pub fn is_invalid_request(&self) -> bool {
         matches!(
             self,
-            Self::Ending(_) | Self::Option(_) | Self::Taken(_) | Self::NoFrames(_) | Self::Unfit(_)
+            Self::Extension(_)
+                | Self::Option(_)
+                | Self::Exists(_)
+                | Self::NoFrames(_)
+                | Self::Unsupported(_)
         )
     }
 }
@@ -42,35 +46,37 @@ impl ExportError {
 impl fmt::Display for ExportError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Ending(path) => write!(
+            Self::Extension(path) => write!(
                 f,
-                "{} has no ending that names a format; there are .glb (glTF), .usda (USD), .pvd \
-                 (VTK), .csv, .png, .gif and .mp4",
+                "{} has no ending that names a format; the formats are .glb (glTF), .usda (USD), \
+                 .pvd (VTK), .csv, .png, .gif and .mp4",
                 path.display()
             ),
-            Self::Option(what) | Self::NoFrames(what) | Self::Unfit(what) => f.write_str(what),
-            Self::Taken(path) => write!(
+            Self::Option(problem) | Self::NoFrames(problem) | Self::Unsupported(problem) => {
+                f.write_str(problem)
+            }
+            Self::Exists(path) => write!(
                 f,
-                "{} is there already; name another file with --to, or write over it with --force",
+                "{} is there already; choose another file with --to, or overwrite it with --force",
                 path.display()
             ),
             Self::Write(path, error) => {
                 let advice = match error.kind() {
                     io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
-                        "free some space, or write to another disk; a smaller --fps writes less"
+                        "free some space, write to another disk, or lower --fps"
                     }
                     io::ErrorKind::NotFound => "make its folder first",
-                    _ => "name a file that you may write with --to",
+                    _ => "choose a file with write permission with --to",
                 };
                 write!(f, "cannot write {}: {error}; {advice}", path.display())
             }
             Self::NoFfmpeg => write!(
                 f,
-                "the program ffmpeg, which makes .mp4 files, is not to be found; install it \
+                "the program ffmpeg, which writes .mp4 files, is not to be found; install it \
                  (https://ffmpeg.org) or export a .gif"
             ),
-            Self::Ffmpeg(said) => write!(f, "ffmpeg could not make the film: {said}"),
-            Self::Draw(what) => write!(f, "the picture cannot be drawn: {what}"),
+            Self::Ffmpeg(message) => write!(f, "ffmpeg could not write the video: {message}"),
+            Self::Draw(problem) => write!(f, "the image cannot be drawn: {problem}"),
             Self::Stopped => write!(f, "stopped; nothing was written"),
         }
     }

@@ -1,109 +1,120 @@
-//! `.gif`: an animated picture that runs for ever, in real time.
+//! `.gif`: an animated image that repeats forever, in real time.
 
 use std::borrow::Cow;
 
 use ::gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 
-use super::palette::{COLOURS, Palette};
-use super::png::drawn;
-use super::{ExportError, Exported, Job, Watch, tell};
+use super::error::ExportError;
+use super::images::with_renderer;
+use super::job::{Exported, Job, Progress, report};
+use super::palette::{COLOUR_COUNT, Palette};
 use crate::picture::Studio;
 
-/// The number of the colour that leaves a pixel as it was.
-const AS_BEFORE: u8 = COLOURS as u8;
-/// Players show a shorter delay as a longer one (1/100 s).
-const LEAST_DELAY: f64 = 2.0;
-/// So many frames teach the palette.
-const LESSONS: usize = 6;
-/// The last frame stays for so long (1/100 s), so that the end can be seen.
-const REST: f64 = 100.0;
+/// Colour index of a pixel that does not change.
+const TRANSPARENT: u8 = COLOUR_COUNT as u8;
+/// Minimum delay between frames (1/100 s). Players replace a shorter delay by a longer one.
+const MIN_DELAY: f64 = 2.0;
+/// Number of frames from which the palette is computed.
+const PALETTE_FRAMES: usize = 6;
+/// Delay after the last frame (1/100 s), before the animation repeats.
+const LAST_DELAY: f64 = 100.0;
 
-pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
-    let beats = beats(&job.chosen.indices, job.chosen.rate);
-    let (width, height) = job.export.options.picture_size(job.export.format);
-    drawn(job, (width, height), |studio| {
-        let mut palette = palette(studio, &beats, watch)?;
-        let mut out = job.draft()?;
+pub(super) fn write(job: &Job, progress: &mut Progress) -> Result<Exported, ExportError> {
+    let schedule = schedule(&job.selection.indices, job.selection.rate);
+    let (width, height) = job.options.image_size(job.format);
+    with_renderer(job, (width, height), |renderer| {
+        let mut palette = palette(renderer, &schedule, progress)?;
+        let mut out = job.create_file()?;
         let mut colours = palette.colours();
-        colours.resize(3 * (COLOURS + 1), 0);
+        colours.resize(3 * (COLOUR_COUNT + 1), 0);
         let (w, h) = (width as u16, height as u16);
-        let failed = |error| failed(job, error);
-        let mut encoder = Encoder::new(&mut out, w, h, &colours).map_err(failed)?;
-        encoder.set_repeat(Repeat::Infinite).map_err(failed)?;
-        let mut before = Vec::new();
-        for (done, &(index, delay)) in beats.iter().enumerate() {
-            tell(watch, done, beats.len())?;
-            let now = palette.numbers(&studio.film_frame(index).pixels);
-            encoder.write_frame(&frame(&before, &now, (w, h), delay)).map_err(failed)?;
-            before = now;
+        let encoding_error = |error| encoding_error(job, error);
+        let mut encoder = Encoder::new(&mut out, w, h, &colours).map_err(encoding_error)?;
+        encoder.set_repeat(Repeat::Infinite).map_err(encoding_error)?;
+        let mut previous = Vec::new();
+        for (done, &(index, delay)) in schedule.iter().enumerate() {
+            report(progress, done, schedule.len())?;
+            let pixels = palette.indices(&renderer.film_frame(index).pixels);
+            let frame = frame(&previous, &pixels, (w, h), delay);
+            encoder.write_frame(&frame).map_err(encoding_error)?;
+            previous = pixels;
         }
-        encoder.into_inner().map_err(failed)?;
-        Ok(Exported { frames: beats.len(), bytes: out.finish()? })
+        encoder.into_inner().map_err(encoding_error)?;
+        Ok(Exported { frames: schedule.len(), bytes: out.finish()? })
     })
 }
 
-/// Which frames to show, and for how long (1/100 s); rounded so that the whole keeps its time.
-fn beats(indices: &[usize], rate: f64) -> Vec<(usize, u16)> {
+/// The frames to show, each with its delay (1/100 s).
+///
+/// The times are rounded, not the delays, so that the total duration is exact.
+fn schedule(indices: &[usize], rate: f64) -> Vec<(usize, u16)> {
     let step = 100.0 / rate;
     let mut shown: Vec<(usize, f64)> = Vec::new();
     for (number, &index) in indices.iter().enumerate() {
-        let at = number as f64 * step;
-        if shown.last().is_none_or(|(_, last)| at - last >= LEAST_DELAY - 1e-9) {
-            shown.push((index, at));
+        let time = number as f64 * step;
+        if shown.last().is_none_or(|(_, last)| time - last >= MIN_DELAY - 1e-9) {
+            shown.push((index, time));
         }
     }
-    let end = shown.last().map_or(0.0, |(_, last)| last + REST);
-    let ends = shown.iter().skip(1).map(|(_, at)| *at).chain([end]);
-    let delays = ends.zip(&shown).map(|(end, (_, at))| (end.round() - at.round()) as u16);
+    let end = shown.last().map_or(0.0, |(_, last)| last + LAST_DELAY);
+    let ends = shown.iter().skip(1).map(|(_, time)| *time).chain([end]);
+    let delays = ends.zip(&shown).map(|(end, (_, start))| (end.round() - start.round()) as u16);
     shown.iter().map(|(index, _)| *index).zip(delays).collect()
 }
 
+/// The palette of some frames, evenly distributed over the animation.
 fn palette(
-    studio: &Studio,
-    beats: &[(usize, u16)],
-    watch: &mut Watch,
+    renderer: &Studio,
+    schedule: &[(usize, u16)],
+    progress: &mut Progress,
 ) -> Result<Palette, ExportError> {
-    let mut lessons = Vec::new();
-    for lesson in 0..LESSONS.min(beats.len()) {
-        tell(watch, 0, beats.len())?;
-        let (index, _) = beats[lesson * (beats.len() - 1) / (LESSONS - 1).max(1)];
-        lessons.push(studio.film_frame(index).pixels);
+    let mut samples = Vec::new();
+    for sample in 0..PALETTE_FRAMES.min(schedule.len()) {
+        report(progress, 0, schedule.len())?;
+        let (index, _) = schedule[sample * (schedule.len() - 1) / (PALETTE_FRAMES - 1).max(1)];
+        samples.push(renderer.film_frame(index).pixels);
     }
-    Ok(Palette::learn(lessons.iter().map(Vec::as_slice)))
+    Ok(Palette::from_frames(samples.iter().map(Vec::as_slice)))
 }
 
-/// The rectangle of what changed; what stayed in it is left as it was.
-fn frame(before: &[u8], now: &[u8], (width, height): (u16, u16), delay: u16) -> Frame<'static> {
+/// The smallest rectangle that contains all changed pixels; unchanged pixels in it are transparent.
+fn frame(
+    previous: &[u8],
+    pixels: &[u8],
+    (width, height): (u16, u16),
+    delay: u16,
+) -> Frame<'static> {
     let row = usize::from(width);
     let mut frame = Frame { delay, dispose: DisposalMethod::Keep, ..Frame::default() };
-    if before.is_empty() {
-        (frame.width, frame.height, frame.buffer) = (width, height, Cow::Owned(now.to_vec()));
+    if previous.is_empty() {
+        (frame.width, frame.height, frame.buffer) = (width, height, Cow::Owned(pixels.to_vec()));
         return frame;
     }
     let (mut low, mut high) = ((row, usize::from(height)), (0, 0));
-    for (at, _) in now.iter().zip(before).enumerate().filter(|(_, (now, before))| now != before) {
+    for (at, _) in pixels.iter().zip(previous).enumerate().filter(|(_, (new, old))| new != old) {
         let (x, y) = (at % row, at / row);
         low = (low.0.min(x), low.1.min(y));
         high = (high.0.max(x + 1), high.1.max(y + 1));
     }
-    // nothing changed: a single pixel keeps the time
+    // if nothing changed, one transparent pixel carries the delay
     if high == (0, 0) {
         (low, high) = ((0, 0), (1, 1));
     }
     let rows = (low.1..high.1).map(|y| y * row);
-    let pixels = rows.flat_map(|start| start + low.0..start + high.0);
-    let buffer: Vec<u8> =
-        pixels.map(|at| if now[at] == before[at] { AS_BEFORE } else { now[at] }).collect();
+    let inside = rows.flat_map(|start| start + low.0..start + high.0);
+    let buffer: Vec<u8> = inside
+        .map(|at| if pixels[at] == previous[at] { TRANSPARENT } else { pixels[at] })
+        .collect();
     (frame.left, frame.top) = (low.0 as u16, low.1 as u16);
     (frame.width, frame.height) = ((high.0 - low.0) as u16, (high.1 - low.1) as u16);
-    frame.transparent = Some(AS_BEFORE);
+    frame.transparent = Some(TRANSPARENT);
     frame.buffer = Cow::Owned(buffer);
     frame
 }
 
-fn failed(job: &Job, error: EncodingError) -> ExportError {
+fn encoding_error(job: &Job, error: EncodingError) -> ExportError {
     match error {
-        EncodingError::Io(error) => job.failed(error),
+        EncodingError::Io(error) => job.write_error(error),
         other => ExportError::Draw(other.to_string()),
     }
 }
@@ -113,29 +124,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_whole_keeps_its_time() {
+    fn rounded_delays_add_up_to_the_duration() {
         let indices: Vec<usize> = (0..=90).collect();
-        let shown = beats(&indices, 30.0);
+        let shown = schedule(&indices, 30.0);
         assert_eq!(shown.len(), 91);
         let total: u32 = shown.iter().map(|(_, delay)| u32::from(*delay)).sum();
         assert_eq!(total, 300 + 100);
-        // more than players can show
-        let shown = beats(&indices, 200.0);
+        // a higher rate than players support
+        let shown = schedule(&indices, 200.0);
         assert!(shown.iter().all(|(_, delay)| *delay >= 2));
         let total: u32 = shown.iter().map(|(_, delay)| u32::from(*delay)).sum();
         assert_eq!(total, 44 + 100);
-        assert_eq!(beats(&[7], 60.0), [(7, 100)]);
+        assert_eq!(schedule(&[7], 60.0), [(7, 100)]);
     }
 
     #[test]
-    fn only_what_changed_is_in_a_frame() {
+    fn a_frame_contains_only_changed_pixels() {
         let before = [0, 1, 2, 3, 4, 5];
         let first = frame(&[], &before, (3, 2), 4);
         assert_eq!((first.width, first.height, first.transparent), (3, 2, None));
         let next = frame(&before, &[0, 9, 2, 3, 4, 8], (3, 2), 4);
         assert_eq!((next.left, next.top, next.width, next.height), (1, 0, 2, 2));
-        assert_eq!(next.buffer.as_ref(), [9, AS_BEFORE, AS_BEFORE, 8]);
+        assert_eq!(next.buffer.as_ref(), [9, TRANSPARENT, TRANSPARENT, 8]);
         let same = frame(&before, &before, (3, 2), 4);
-        assert_eq!((same.width, same.height, same.buffer.as_ref()), (1, 1, &[AS_BEFORE][..]));
+        assert_eq!((same.width, same.height, same.buffer.as_ref()), (1, 1, &[TRANSPARENT][..]));
     }
 }

@@ -1,7 +1,7 @@
-//! `.glb`: binary glTF 2.0, a node a body, moved by one animation.
+//! `.glb`: binary glTF 2.0 with one node per body and one animation.
 //!
-//! The Khronos Group, *glTF 2.0 Specification* (ISO/IEC 12113:2022). +y is up there, so where gravity
-//! points another way, a root node turns the scene.
+//! Reference: The Khronos Group, *glTF 2.0 Specification* (ISO/IEC 12113:2022). In glTF +y is up. If
+//! gravity does not point along −y, the root node rotates the scene.
 
 use std::collections::HashMap;
 use std::io::Write;
@@ -9,132 +9,138 @@ use std::io::Write;
 use serde_json::{Value, json};
 use tumble::{DQuat, DVec3};
 
-use super::glb_buffer::{Arrays, VERTICES};
-use super::stage::{Form, Stage, steady, too_far, upright};
-use super::{ExportError, Exported, Job, Watch, tell};
+use super::error::ExportError;
+use super::geometry::{
+    SceneGeometry, ShapeGeometry, continuous_orientations, range_error, upright_rotation,
+};
+use super::glb_buffer::{ARRAY_BUFFER, BufferBuilder};
+use super::job::{Exported, Job, Progress, report};
 use crate::replay::ReplayFrame;
 
-/// Number of the primitive mode that draws points.
+/// Primitive mode for points.
 const POINTS: u32 = 0;
 
-pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
-    let (frames, times) = in_single_precision(job);
+pub(super) fn write(job: &Job, progress: &mut Progress) -> Result<Exported, ExportError> {
+    let (frames, times) = frames_in_single_precision(job);
     let (scene, count) = (&job.replay.scene, job.replay.world.body_count());
-    let mut arrays = Arrays::default();
-    let stage = Stage::new(job)?;
-    let mut meshes = Meshes::new(&stage, &mut arrays)?;
-    let mut motion = Motion::new(&mut arrays, &times)?;
+    let mut buffer = BufferBuilder::default();
+    let geometry = SceneGeometry::new(job)?;
+    let mut meshes = Meshes::new(&geometry, &mut buffer)?;
+    let mut animation = Animation::new(&mut buffer, &times)?;
     let mut nodes = vec![json!({ "name": scene.name })];
     for (index, body) in job.replay.world.bodies().enumerate() {
-        tell(watch, index, count)?;
-        let places: Vec<[f32; 3]> =
-            frames.iter().map(|frame| single(frame.poses[index].position)).collect();
-        let turns: Vec<[f32; 4]> = steady(frames.iter().copied(), index).map(turn).collect();
-        motion.add(&mut arrays, nodes.len(), &places, &turns)?;
+        report(progress, index, count)?;
+        let translations: Vec<[f32; 3]> =
+            frames.iter().map(|frame| to_f32(frame.poses[index].position)).collect();
+        let rotations: Vec<[f32; 4]> =
+            continuous_orientations(frames.iter().copied(), index).map(rotation).collect();
+        animation.add_node(&mut buffer, nodes.len(), &translations, &rotations)?;
         nodes.push(json!({
-            "name": body.name(), "mesh": meshes.of_body(&stage, index),
-            "translation": places[0], "rotation": turns[0],
+            "name": body.name(), "mesh": meshes.body_mesh(&geometry, index),
+            "translation": translations[0], "rotation": rotations[0],
         }));
     }
-    if !stage.walls.is_empty() {
-        nodes.push(json!({ "name": "walls", "mesh": meshes.walls(&stage, &mut arrays)? }));
+    if !geometry.walls.is_empty() {
+        nodes.push(json!({ "name": "walls", "mesh": meshes.wall_mesh(&geometry, &mut buffer)? }));
     }
     nodes[0]["children"] = (1..nodes.len()).collect();
-    let upright = upright(scene.gravity, DVec3::Y);
+    let upright = upright_rotation(scene.gravity, DVec3::Y);
     if upright != DQuat::IDENTITY {
-        nodes[0]["rotation"] = json!(turn(upright));
+        nodes[0]["rotation"] = json!(rotation(upright));
     }
     let mut root = json!({
         "asset": { "version": "2.0", "generator": concat!("tumble ", env!("CARGO_PKG_VERSION")) },
         "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": nodes,
         "meshes": meshes.meshes, "materials": meshes.materials,
-        "accessors": arrays.accessors, "bufferViews": arrays.views,
-        "buffers": [{ "byteLength": arrays.bytes.len() }],
+        "accessors": buffer.accessors, "bufferViews": buffer.views,
+        "buffers": [{ "byteLength": buffer.bytes.len() }],
     });
-    if let Some(animation) = motion.animation(&scene.name) {
+    if let Some(animation) = animation.into_json(&scene.name) {
         root["animations"] = json!([animation]);
     }
-    let bytes = put_together(job, root.to_string().into_bytes(), arrays.bytes)?;
+    let bytes = write_chunks(job, root.to_string().into_bytes(), buffer.bytes)?;
     Ok(Exported { frames: frames.len(), bytes })
 }
 
-/// How the nodes move.
-struct Motion {
-    /// The accessor of the times; none for a single frame, which is a pose and no motion.
-    clock: Option<usize>,
+/// The animation of all nodes.
+struct Animation {
+    /// Accessor of the times; `None` for a single frame, which needs no animation.
+    times: Option<usize>,
     samplers: Vec<Value>,
     channels: Vec<Value>,
 }
 
-impl Motion {
-    fn new(arrays: &mut Arrays, times: &[[f32; 1]]) -> Result<Self, ExportError> {
-        let clock = if times.len() > 1 {
-            Some(arrays.vectors(times, None, true).ok_or_else(too_far)?)
+impl Animation {
+    fn new(buffer: &mut BufferBuilder, times: &[[f32; 1]]) -> Result<Self, ExportError> {
+        let times = if times.len() > 1 {
+            Some(buffer.add_vectors(times, None, true).ok_or_else(range_error)?)
         } else {
             None
         };
-        Ok(Self { clock, samplers: Vec::new(), channels: Vec::new() })
+        Ok(Self { times, samplers: Vec::new(), channels: Vec::new() })
     }
 
-    fn add(
+    /// Adds the motion of a node.
+    fn add_node(
         &mut self,
-        arrays: &mut Arrays,
+        buffer: &mut BufferBuilder,
         node: usize,
-        places: &[[f32; 3]],
-        turns: &[[f32; 4]],
+        translations: &[[f32; 3]],
+        rotations: &[[f32; 4]],
     ) -> Result<(), ExportError> {
-        let Some(clock) = self.clock else {
-            let is_finite = places[0].iter().all(|number| number.is_finite());
-            return if is_finite { Ok(()) } else { Err(too_far()) };
+        let Some(times) = self.times else {
+            let is_finite = translations[0].iter().all(|number| number.is_finite());
+            return if is_finite { Ok(()) } else { Err(range_error()) };
         };
         let outputs = [
-            ("translation", arrays.vectors(places, None, false)),
-            ("rotation", arrays.vectors(turns, None, false)),
+            ("translation", buffer.add_vectors(translations, None, false)),
+            ("rotation", buffer.add_vectors(rotations, None, false)),
         ];
         for (path, output) in outputs {
-            let output = output.ok_or_else(too_far)?;
+            let output = output.ok_or_else(range_error)?;
             let target = json!({ "node": node, "path": path });
             self.channels.push(json!({ "sampler": self.samplers.len(), "target": target }));
-            let sampler = json!({ "input": clock, "output": output, "interpolation": "LINEAR" });
+            let sampler = json!({ "input": times, "output": output, "interpolation": "LINEAR" });
             self.samplers.push(sampler);
         }
         Ok(())
     }
 
-    fn animation(self, name: &str) -> Option<Value> {
-        self.clock?;
+    fn into_json(self, name: &str) -> Option<Value> {
+        self.times?;
         Some(json!({ "name": name, "samplers": self.samplers, "channels": self.channels }))
     }
 }
 
-/// The two chunks and their header, each padded to four bytes.
-fn put_together(job: &Job, mut text: Vec<u8>, mut binary: Vec<u8>) -> Result<u64, ExportError> {
+/// Writes the header and the two chunks, each padded to four bytes. Returns the size of the file.
+fn write_chunks(job: &Job, mut text: Vec<u8>, mut binary: Vec<u8>) -> Result<u64, ExportError> {
     text.resize(text.len().next_multiple_of(4), b' ');
     binary.resize(binary.len().next_multiple_of(4), 0);
-    let word = |length: usize| {
-        let too_long = "the motion is longer than the 4 GiB that a .glb can hold; lower --fps, or \
-                        export a part of it with --from and --to-time";
-        u32::try_from(length).map_err(|_| ExportError::Unfit(too_long.to_owned()))
+    let to_u32 = |length: usize| {
+        let too_long = "the animation exceeds 4 GiB, the maximum size of a .glb; lower --fps, or export a \
+                        part of it with --from and --to-time";
+        u32::try_from(length).map_err(|_| ExportError::Unsupported(too_long.to_owned()))
     };
-    let whole = word(12 + 8 + text.len() + 8 + binary.len())?;
-    let mut out = job.draft()?;
-    let mut put = |bytes: &[u8]| out.write_all(bytes).map_err(|error| job.failed(error));
-    put(b"glTF")?;
-    put(&2u32.to_le_bytes())?;
-    put(&whole.to_le_bytes())?;
+    let total = to_u32(12 + 8 + text.len() + 8 + binary.len())?;
+    let mut out = job.create_file()?;
+    let mut write = |bytes: &[u8]| out.write_all(bytes).map_err(|error| job.write_error(error));
+    write(b"glTF")?;
+    write(&2u32.to_le_bytes())?;
+    write(&total.to_le_bytes())?;
     for (kind, chunk) in [(b"JSON", &text), (b"BIN\0", &binary)] {
-        put(&word(chunk.len())?.to_le_bytes())?;
-        put(kind)?;
-        put(chunk)?;
+        write(&to_u32(chunk.len())?.to_le_bytes())?;
+        write(kind)?;
+        write(chunk)?;
     }
     out.finish()
 }
 
-/// The frames whose times, counted from the first one, still differ in single precision.
-fn in_single_precision<'a>(job: &Job<'a>) -> (Vec<&'a ReplayFrame>, Vec<[f32; 1]>) {
-    let start = job.chosen.span[0].time;
+/// The selected frames with their times since the first frame (s) in single precision. Omits a frame
+/// whose time equals that of the previous one, because glTF requires increasing times.
+fn frames_in_single_precision<'a>(job: &Job<'a>) -> (Vec<&'a ReplayFrame>, Vec<[f32; 1]>) {
+    let start = job.selection.span[0].time;
     let (mut frames, mut times) = (Vec::new(), Vec::<[f32; 1]>::new());
-    for frame in job.chosen.frames() {
+    for frame in job.selection.frames() {
         let time = (frame.time - start) as f32;
         if times.last().is_none_or(|last| last[0] < time) {
             frames.push(frame);
@@ -144,40 +150,40 @@ fn in_single_precision<'a>(job: &Job<'a>) -> (Vec<&'a ReplayFrame>, Vec<[f32; 1]
     (frames, times)
 }
 
-fn single(v: DVec3) -> [f32; 3] {
+fn to_f32(v: DVec3) -> [f32; 3] {
     v.as_vec3().to_array()
 }
 
-/// In the order of glTF: x, y, z, w.
-fn turn(q: DQuat) -> [f32; 4] {
+/// A unit quaternion in the order of glTF: x, y, z, w.
+fn rotation(q: DQuat) -> [f32; 4] {
     q.as_quat().normalize().to_array()
 }
 
-/// The meshes and materials of the file; bodies of one shape share its arrays.
+/// The meshes and materials of the file. Bodies with the same shape share its accessors.
 struct Meshes {
-    /// The primitive of each shape, without a material.
+    /// Primitive of each shape, without a material.
     primitives: Vec<Value>,
-    /// The mesh of each shape and colour.
-    made: HashMap<(usize, [u32; 4]), usize>,
-    /// The material of each colour.
-    colours: HashMap<[u32; 4], usize>,
+    /// Mesh of each shape and colour.
+    mesh_of: HashMap<(usize, [u32; 4]), usize>,
+    /// Material of each colour.
+    material_of: HashMap<[u32; 4], usize>,
     meshes: Vec<Value>,
     materials: Vec<Value>,
 }
 
 impl Meshes {
-    fn new(stage: &Stage, arrays: &mut Arrays) -> Result<Self, ExportError> {
+    fn new(geometry: &SceneGeometry, buffer: &mut BufferBuilder) -> Result<Self, ExportError> {
         let primitives: Option<_> =
-            stage.forms.iter().map(|form| primitive(form, arrays)).collect();
-        let (made, colours) = (HashMap::new(), HashMap::new());
-        let primitives = primitives.ok_or_else(too_far)?;
-        Ok(Self { primitives, made, colours, meshes: Vec::new(), materials: Vec::new() })
+            geometry.shapes.iter().map(|shape| primitive(shape, buffer)).collect();
+        let (mesh_of, material_of) = (HashMap::new(), HashMap::new());
+        let primitives = primitives.ok_or_else(range_error)?;
+        Ok(Self { primitives, mesh_of, material_of, meshes: Vec::new(), materials: Vec::new() })
     }
 
-    fn of_body(&mut self, stage: &Stage, body: usize) -> usize {
-        let colour = stage.colours[body];
+    fn body_mesh(&mut self, geometry: &SceneGeometry, body: usize) -> usize {
+        let colour = geometry.colours[body];
         let key = colour.map(f32::to_bits);
-        let material = *self.colours.entry(key).or_insert_with(|| {
+        let material = *self.material_of.entry(key).or_insert_with(|| {
             let mut material = json!({
                 "pbrMetallicRoughness": {
                     "baseColorFactor": colour, "metallicFactor": 0.0, "roughnessFactor": 0.5,
@@ -190,27 +196,34 @@ impl Meshes {
             self.materials.push(material);
             self.materials.len() - 1
         });
-        let form = stage.form_of[body];
-        *self.made.entry((form, key)).or_insert_with(|| {
-            let mut primitive = self.primitives[form].clone();
+        let shape = geometry.shape_of_body[body];
+        *self.mesh_of.entry((shape, key)).or_insert_with(|| {
+            let mut primitive = self.primitives[shape].clone();
             primitive["material"] = json!(material);
             self.meshes.push(json!({ "primitives": [primitive] }));
             self.meshes.len() - 1
         })
     }
 
-    fn walls(&mut self, stage: &Stage, arrays: &mut Arrays) -> Result<usize, ExportError> {
-        let points: Vec<[f32; 3]> = stage.walls.iter().flatten().map(|&v| single(v)).collect();
+    fn wall_mesh(
+        &mut self,
+        geometry: &SceneGeometry,
+        buffer: &mut BufferBuilder,
+    ) -> Result<usize, ExportError> {
+        let points: Vec<[f32; 3]> = geometry.walls.iter().flatten().map(|&v| to_f32(v)).collect();
         let normal = |[a, b, c, _]: &[DVec3; 4]| (*b - *a).cross(*c - *a).normalize_or(DVec3::Y);
         let normals: Vec<[f32; 3]> =
-            stage.walls.iter().flat_map(|wall| [single(normal(wall)); 4]).collect();
-        let corners = (0..stage.walls.len() as u32).map(|wall| 4 * wall);
-        let indices: Vec<u32> = corners.flat_map(|i| [i, i + 1, i + 2, i, i + 2, i + 3]).collect();
-        let position = arrays.vectors(&points, Some(VERTICES), true).ok_or_else(too_far)?;
-        let normal = arrays.vectors(&normals, Some(VERTICES), false).ok_or_else(too_far)?;
+            geometry.walls.iter().flat_map(|wall| [to_f32(normal(wall)); 4]).collect();
+        let first_vertices = (0..geometry.walls.len() as u32).map(|wall| 4 * wall);
+        let indices: Vec<u32> =
+            first_vertices.flat_map(|i| [i, i + 1, i + 2, i, i + 2, i + 3]).collect();
+        let position =
+            buffer.add_vectors(&points, Some(ARRAY_BUFFER), true).ok_or_else(range_error)?;
+        let normal =
+            buffer.add_vectors(&normals, Some(ARRAY_BUFFER), false).ok_or_else(range_error)?;
         self.meshes.push(json!({ "primitives": [{
             "attributes": { "POSITION": position, "NORMAL": normal },
-            "indices": arrays.indices(&indices), "material": self.materials.len(),
+            "indices": buffer.add_indices(&indices), "material": self.materials.len(),
         }]}));
         self.materials.push(json!({
             "name": "walls", "alphaMode": "BLEND", "doubleSided": true,
@@ -223,21 +236,21 @@ impl Meshes {
     }
 }
 
-/// The arrays of a shape; `None` if it is too large for single precision.
-fn primitive(form: &Form, arrays: &mut Arrays) -> Option<Value> {
-    if form.triangles.is_empty() {
-        let points: Vec<[f32; 3]> = form.points.iter().map(|&point| single(point)).collect();
-        let position = arrays.vectors(&points, Some(VERTICES), true)?;
+/// The primitive of a shape; `None` if a coordinate exceeds the range of single precision.
+fn primitive(shape: &ShapeGeometry, buffer: &mut BufferBuilder) -> Option<Value> {
+    if shape.triangles.is_empty() {
+        let points: Vec<[f32; 3]> = shape.points.iter().map(|&point| to_f32(point)).collect();
+        let position = buffer.add_vectors(&points, Some(ARRAY_BUFFER), true)?;
         return Some(json!({ "attributes": { "POSITION": position }, "mode": POINTS }));
     }
-    // a vertex of glTF has one normal: one on a crease becomes several
-    let mut made: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
+    // a vertex of glTF has one normal, so a vertex on a crease becomes several
+    let mut vertex_of: HashMap<(u32, [u32; 3]), u32> = HashMap::new();
     let (mut points, mut normals, mut indices) = (Vec::new(), Vec::new(), Vec::new());
-    for (triangle, around) in form.triangles.iter().zip(&form.normals) {
-        for (&corner, normal) in triangle.iter().zip(around) {
+    for (triangle, triangle_normals) in shape.triangles.iter().zip(&shape.normals) {
+        for (&corner, normal) in triangle.iter().zip(triangle_normals) {
             let normal = normal.normalize().to_array();
-            let index = made.entry((corner, normal.map(f32::to_bits))).or_insert_with(|| {
-                points.push(single(form.points[corner as usize]));
+            let index = vertex_of.entry((corner, normal.map(f32::to_bits))).or_insert_with(|| {
+                points.push(to_f32(shape.points[corner as usize]));
                 normals.push(normal);
                 (points.len() - 1) as u32
             });
@@ -246,9 +259,9 @@ fn primitive(form: &Form, arrays: &mut Arrays) -> Option<Value> {
     }
     Some(json!({
         "attributes": {
-            "POSITION": arrays.vectors(&points, Some(VERTICES), true)?,
-            "NORMAL": arrays.vectors(&normals, Some(VERTICES), false)?,
+            "POSITION": buffer.add_vectors(&points, Some(ARRAY_BUFFER), true)?,
+            "NORMAL": buffer.add_vectors(&normals, Some(ARRAY_BUFFER), false)?,
         },
-        "indices": arrays.indices(&indices),
+        "indices": buffer.add_indices(&indices),
     }))
 }

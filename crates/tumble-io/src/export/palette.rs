@@ -1,72 +1,77 @@
-//! 255 colours for an animated picture.
+//! Colour table of a GIF.
 
+use std::cmp::Reverse;
 use std::collections::HashMap;
 
 use color_quant::NeuQuant;
 
-/// How many colours a picture may have; one more number is left for "as before".
-pub(super) const COLOURS: usize = 255;
-/// So many colours at most are kept as they are, each with at least this part of all pixels: a
-/// smooth background would show steps.
-const KEPT: usize = 40;
-const KEPT_SHARE: u64 = 500;
-/// Any other colour is taken to heart at most so many times.
-const MOST: u32 = 64;
+/// Number of colours. One more index of the 256 is reserved for transparent pixels.
+pub(super) const COLOUR_COUNT: usize = 255;
+/// Maximum number of colours that enter the table exactly. Approximated, they would show as bands in
+/// a smooth background.
+const MAX_EXACT: usize = 40;
+/// A colour enters the table exactly if it covers more than one in this many pixels.
+const EXACT_SHARE: u64 = 500;
+/// Maximum weight of a colour in the quantisation of the other colours.
+const MAX_WEIGHT: u32 = 64;
+/// Minimum number of bytes that the quantiser needs as input.
+const MIN_SAMPLE_BYTES: usize = 4 * 1024;
 
-/// The colours of an animated picture, the same in all frames, so that nothing flickers.
+/// A colour table for all frames; a table per frame would flicker.
 pub(super) struct Palette {
-    kept: Vec<[u8; 3]>,
+    exact: Vec<[u8; 3]>,
     quantiser: NeuQuant,
-    found: HashMap<[u8; 3], u8>,
+    /// Index of every colour seen so far.
+    indices: HashMap<[u8; 3], u8>,
 }
 
 impl Palette {
-    /// Learns from the pixels of some frames.
-    pub fn learn<'a>(frames: impl Iterator<Item = &'a [u8]>) -> Self {
+    /// Computes the table from the pixels (RGB) of some frames.
+    pub fn from_frames<'a>(frames: impl Iterator<Item = &'a [u8]>) -> Self {
         let mut counts: HashMap<[u8; 3], u32> = HashMap::new();
         for pixel in frames.flat_map(|pixels| pixels.chunks_exact(3)) {
             *counts.entry([pixel[0], pixel[1], pixel[2]]).or_default() += 1;
         }
-        // in a fixed order, so that the same run gives the same file
+        // sorted, so that the same run gives the same file
         let mut counts: Vec<_> = counts.into_iter().collect();
-        counts.sort_unstable_by_key(|&(colour, count)| (std::cmp::Reverse(count), colour));
-        let all: u64 = counts.iter().map(|&(_, count)| u64::from(count)).sum();
-        let is_large = |count: u32| u64::from(count) * KEPT_SHARE > all;
-        let kept = counts.iter().take(KEPT).filter(|&&(_, count)| is_large(count));
-        let kept: Vec<[u8; 3]> = kept.map(|&(colour, _)| colour).collect();
-        // by the root of its share: a small body needs as many shades as a large floor
-        let weight = |count: u32| f64::from(count).sqrt().ceil().min(f64::from(MOST)) as usize;
-        let mut pixels = Vec::new();
-        for ([r, g, b], count) in counts.split_off(kept.len()) {
+        counts.sort_unstable_by_key(|&(colour, count)| (Reverse(count), colour));
+        let total: u64 = counts.iter().map(|&(_, count)| u64::from(count)).sum();
+        let is_frequent = |count: u32| u64::from(count) * EXACT_SHARE > total;
+        let exact = counts.iter().take(MAX_EXACT).filter(|&&(_, count)| is_frequent(count));
+        let exact: Vec<[u8; 3]> = exact.map(|&(colour, _)| colour).collect();
+        // the square root of the count, because a small body needs as many shades as a large floor
+        let weight =
+            |count: u32| f64::from(count).sqrt().ceil().min(f64::from(MAX_WEIGHT)) as usize;
+        let mut samples = Vec::new();
+        for ([r, g, b], count) in counts.split_off(exact.len()) {
             for _ in 0..weight(count) {
-                pixels.extend([r, g, b, 255]);
+                samples.extend([r, g, b, 255]);
             }
         }
-        // the network of the quantiser wants some food
-        while pixels.len() < 4 * 1024 {
-            let again = pixels.clone();
-            pixels.extend(if again.is_empty() { vec![255; 4] } else { again });
+        while samples.len() < MIN_SAMPLE_BYTES {
+            let copy = samples.clone();
+            samples.extend(if copy.is_empty() { vec![255; 4] } else { copy });
         }
-        let quantiser = NeuQuant::new(3, COLOURS - kept.len(), &pixels);
-        let found = kept.iter().copied().zip(0..).collect();
-        Self { kept, quantiser, found }
+        let quantiser = NeuQuant::new(3, COLOUR_COUNT - exact.len(), &samples);
+        let indices = exact.iter().copied().zip(0..).collect();
+        Self { exact, quantiser, indices }
     }
 
-    /// Red, green and blue of every colour.
+    /// Red, green and blue of all colours.
     pub fn colours(&self) -> Vec<u8> {
-        let learned = self.quantiser.color_map_rgb();
-        self.kept.iter().flatten().copied().chain(learned).collect()
+        let quantised = self.quantiser.color_map_rgb();
+        self.exact.iter().flatten().copied().chain(quantised).collect()
     }
 
-    /// The numbers of the colours nearest to these pixels.
-    pub fn numbers(&mut self, pixels: &[u8]) -> Vec<u8> {
-        let Self { kept, quantiser, found } = self;
-        let first = kept.len();
-        let number = |pixel: &[u8]| {
+    /// The index of the nearest colour for each pixel (RGB).
+    pub fn indices(&mut self, pixels: &[u8]) -> Vec<u8> {
+        let Self { exact, quantiser, indices } = self;
+        let first = exact.len();
+        let index = |pixel: &[u8]| {
             let rgba = [pixel[0], pixel[1], pixel[2], 255];
-            let find = || (first + quantiser.index_of(&rgba)) as u8;
-            *found.entry([pixel[0], pixel[1], pixel[2]]).or_insert_with(find)
+            let nearest = || (first + quantiser.index_of(&rgba)) as u8;
+            *indices.entry([pixel[0], pixel[1], pixel[2]]).or_insert_with(nearest)
         };
-        pixels.chunks_exact(3).map(number).collect()
+        pixels.chunks_exact(3).map(index).collect()
     }
 }

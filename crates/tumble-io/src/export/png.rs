@@ -1,38 +1,22 @@
-//! `.png`: the whole motion, or one moment; and what all pictures of a run share.
+//! `.png`: one image of the whole motion or of the state at one time.
 
 use std::io::Write;
 
-use super::{ExportError, Exported, Job, Watch, tell};
-use crate::picture::{Frame, Pose, Studio, encode_png};
-use crate::run::with_studio;
+use super::error::ExportError;
+use super::images::with_renderer;
+use super::job::{Exported, Job, Progress, report};
+use crate::picture::encode_png;
 
-pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
-    let options = &job.export.options;
-    let moment = options.at.map(|time| job.chosen.moment(time)).transpose()?;
-    let size = options.picture_size(job.export.format);
-    let image = drawn(job, size, |studio| match moment {
-        Some(frame) => studio.frame(frame),
-        None => studio.motion(),
+pub(super) fn write(job: &Job, progress: &mut Progress) -> Result<Exported, ExportError> {
+    let frame = job.options.at.map(|time| job.selection.frame_at(time)).transpose()?;
+    let size = job.options.image_size(job.format);
+    let image = with_renderer(job, size, |renderer| match frame {
+        Some(frame) => renderer.frame(frame),
+        None => renderer.motion(),
     });
-    tell(watch, 1, 1)?;
+    report(progress, 1, 1)?;
     let bytes = encode_png(&image).map_err(|error| ExportError::Draw(error.to_string()))?;
-    let mut out = job.draft()?;
-    out.write_all(&bytes).map_err(|error| job.failed(error))?;
+    let mut out = job.create_file()?;
+    out.write_all(&bytes).map_err(|error| job.write_error(error))?;
     Ok(Exported { frames: 1, bytes: out.finish()? })
-}
-
-/// Draws with a studio that knows all frames of the span of time, under the indices they have in it.
-pub(super) fn drawn<T>(job: &Job, size: (u32, u32), draw: impl FnOnce(&Studio) -> T) -> T {
-    let pose = |pose: &crate::replay::Pose| Pose {
-        position: pose.position,
-        orientation: pose.orientation,
-    };
-    let frames: Vec<Frame> = job
-        .chosen
-        .span
-        .iter()
-        .map(|frame| Frame { time: frame.time, poses: frame.poses.iter().map(pose).collect() })
-        .collect();
-    let view = (size, job.export.options.view);
-    with_studio((&job.replay.scene, &job.replay.world), &frames, view, draw)
 }

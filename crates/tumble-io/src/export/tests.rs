@@ -1,4 +1,4 @@
-//! What is written, read back.
+//! Reads exported files back and compares them with the run.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,13 +9,13 @@ use serde_json::Value;
 use tempfile::TempDir;
 use tumble::{DVec3, World};
 
-use super::{Export, ExportError, ExportOptions, Exported, Format};
+use super::*;
 use crate::picture::View;
 use crate::plot::EnergyRow;
 use crate::replay::{Pose, Replay, ReplayFrame};
 use crate::scene::{LoadOptions, Loaded, Source, load_text};
 
-/// Two boxes of one shape, a pair of bare particles, a floor.
+/// Two boxes with the same shape, a pair of particles without a surface, and a floor.
 const SCENE: &str = "dt = 1e-3\ncollision = { collision_stiffness = 500 }\n\
     wall = [{ normal = [0, 1, 0] }]\n\
     [[body]]\nname = \"box \\\\ & <ä>\"\nshape = \"box\"\nposition = [0, 0.1, 0]\n\
@@ -53,10 +53,10 @@ fn replay(text: &str, count: usize) -> Replay {
     Replay { scene, world, frames, ledger }
 }
 
-/// A folder for one export.
-struct Desk(TempDir);
+/// A temporary folder for exports.
+struct OutputFolder(TempDir);
 
-impl Desk {
+impl OutputFolder {
     fn new() -> Self {
         Self(tempfile::tempdir().unwrap())
     }
@@ -95,7 +95,7 @@ fn word(bytes: &[u8], at: usize) -> usize {
     u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize
 }
 
-/// The two parts of a `.glb`.
+/// The two chunks of a `.glb`: JSON and binary.
 fn glb(bytes: &[u8]) -> (Value, Vec<u8>) {
     assert_eq!((&bytes[..4], word(bytes, 4), word(bytes, 8)), (&b"glTF"[..], 2, bytes.len()));
     let length = word(bytes, 12);
@@ -106,7 +106,7 @@ fn glb(bytes: &[u8]) -> (Value, Vec<u8>) {
     (serde_json::from_slice(&bytes[20..binary]).unwrap(), bytes[binary + 8..].to_vec())
 }
 
-/// The numbers of an accessor of floats.
+/// The numbers of an accessor of `f32` type.
 fn floats(root: &Value, binary: &[u8], accessor: &Value) -> Vec<f32> {
     let accessor = &root["accessors"][accessor.as_u64().unwrap() as usize];
     let view = &root["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
@@ -123,9 +123,10 @@ fn floats(root: &Value, binary: &[u8], accessor: &Value) -> Vec<f32> {
 }
 
 #[test]
-fn a_glb_moves_its_nodes_as_the_bodies_moved() {
+fn the_animation_of_a_glb_is_the_motion_of_the_bodies() {
     let replay = replay(SCENE, 30);
-    let (root, binary) = glb(&Desk::new().bytes(&replay, "a.glb", ExportOptions::default()));
+    let (root, binary) =
+        glb(&OutputFolder::new().bytes(&replay, "a.glb", ExportOptions::default()));
     let animation = &root["animations"][0];
     assert_eq!(animation["channels"].as_array().unwrap().len(), 6);
     for channel in animation["channels"].as_array().unwrap() {
@@ -153,14 +154,15 @@ fn a_glb_moves_its_nodes_as_the_bodies_moved() {
 }
 
 #[test]
-fn a_glb_has_one_set_of_arrays_a_shape_and_bounds_that_hold() {
+fn bodies_of_one_shape_share_accessors_and_accessor_bounds_are_correct() {
     let replay = replay(SCENE, 2);
-    let (root, binary) = glb(&Desk::new().bytes(&replay, "a.glb", ExportOptions::default()));
+    let (root, binary) =
+        glb(&OutputFolder::new().bytes(&replay, "a.glb", ExportOptions::default()));
     let primitive = |node: usize| {
         let mesh = root["nodes"][node]["mesh"].as_u64().unwrap() as usize;
         root["meshes"][mesh]["primitives"][0].clone()
     };
-    // two bodies of one shape, in two colours
+    // two bodies with the same shape and different colours
     assert_eq!(primitive(1)["attributes"], primitive(2)["attributes"]);
     assert_ne!(primitive(1)["material"], primitive(2)["material"]);
     assert_eq!((&primitive(3)["mode"], &primitive(3)["indices"]), (&Value::from(0), &Value::Null));
@@ -183,41 +185,42 @@ fn a_glb_has_one_set_of_arrays_a_shape_and_bounds_that_hold() {
 }
 
 #[test]
-fn a_glb_of_one_frame_is_a_pose_and_stands_upright() {
+fn a_glb_of_one_frame_has_no_animation_and_is_upright() {
     let text = format!("gravity = [0, 0, -9.8]\n{SCENE}");
-    let (root, _) = glb(&Desk::new().bytes(&replay(&text, 1), "a.glb", ExportOptions::default()));
+    let (root, _) =
+        glb(&OutputFolder::new().bytes(&replay(&text, 1), "a.glb", ExportOptions::default()));
     assert_eq!(root["animations"], Value::Null);
     let q: Vec<f32> = serde_json::from_value(root["nodes"][0]["rotation"].clone()).unwrap();
     assert!((Quat::from_slice(&q) * Vec3::Z - Vec3::Y).length() < 1e-6);
 }
 
 #[test]
-fn what_single_precision_cannot_hold_is_refused() {
+fn positions_beyond_single_precision_are_rejected() {
     let mut far = replay(SCENE, 2);
-    let desk = Desk::new();
-    for (file, place) in [("a.glb", 1e39), ("a.usda", 1e39), ("a.glb", 1e300), ("a.usda", 1e300)] {
-        far.frames[1].poses[0].position = DVec3::X * place;
-        let error = desk.export(&far, file, ExportOptions::default()).unwrap_err();
-        assert!(matches!(error, ExportError::Unfit(_)), "{error}");
+    let folder = OutputFolder::new();
+    for (file, x) in [("a.glb", 1e39), ("a.usda", 1e39), ("a.glb", 1e300), ("a.usda", 1e300)] {
+        far.frames[1].poses[0].position = DVec3::X * x;
+        let error = folder.export(&far, file, ExportOptions::default()).unwrap_err();
+        assert!(matches!(error, ExportError::Unsupported(_)), "{error}");
     }
-    assert!(desk.names().is_empty());
-    // times that are the same in single precision
+    assert!(folder.names().is_empty());
+    // times that are equal in single precision
     let mut dense = replay(SCENE, 3);
     dense.frames[1].time = dense.frames[2].time - 1e-12;
-    let exported = desk.export(&dense, "a.glb", ExportOptions::default()).unwrap();
+    let exported = folder.export(&dense, "a.glb", ExportOptions::default()).unwrap();
     assert_eq!(exported.frames, 2);
 }
 
 #[test]
-fn a_usda_has_time_samples_under_names_that_usd_accepts() {
+fn a_usda_has_valid_names_and_time_samples() {
     let replay = replay(SCENE, 4);
-    let text = Desk::new().bytes(&replay, "a.usda", ExportOptions::default());
+    let text = OutputFolder::new().bytes(&replay, "a.usda", ExportOptions::default());
     let text = String::from_utf8(text).unwrap();
-    let head =
+    let metadata =
         "endTimeCode = 3\n    framesPerSecond = 50\n    metersPerUnit = 1\n    startTimeCode = 0";
     assert!(text.starts_with("#usda 1.0\n"), "{text}");
     for part in [
-        head,
+        metadata,
         "upAxis = \"Y\"",
         "def Xform \"box_________0\" (",
         "displayName = \"box \\\\ & <ä> 0\"",
@@ -231,7 +234,7 @@ fn a_usda_has_time_samples_under_names_that_usd_accepts() {
     }
     assert_eq!(text.matches("class Xform").count(), 2);
     assert_eq!(text.matches('{').count(), text.matches('}').count());
-    let z = Desk::new().bytes(
+    let z = OutputFolder::new().bytes(
         &self::replay(&format!("gravity = [0, 0, -9.8]\n{SCENE}"), 2),
         "a.usda",
         ExportOptions::default(),
@@ -240,7 +243,7 @@ fn a_usda_has_time_samples_under_names_that_usd_accepts() {
     assert!(z.contains("upAxis = \"Z\"") && !z.contains("    quatf xformOp:orient = "));
 }
 
-/// The array of a `.vtp` of that name, as bytes.
+/// The bytes of the array `name` of a `.vtp`.
 fn array<'a>(bytes: &'a [u8], name: &str) -> &'a [u8] {
     let find = |text: &[u8], from: usize| {
         let at = bytes[from..].windows(text.len()).position(|window| window == text);
@@ -262,16 +265,16 @@ fn vectors(bytes: &[u8]) -> Vec<Vec3> {
 }
 
 #[test]
-fn a_vtp_knows_place_velocity_and_force_of_every_particle() {
+fn a_vtp_has_position_velocity_and_force_of_every_particle() {
     let mut replay = replay(SCENE, 6);
-    // one body deep in the floor
+    // one body deep below the floor
     replay.frames[5].poses[0].position.y = 0.05;
-    let desk = Desk::new();
-    let list = desk.bytes(&replay, "a & b.pvd", ExportOptions::default());
+    let folder = OutputFolder::new();
+    let list = folder.bytes(&replay, "a & b.pvd", ExportOptions::default());
     let list = String::from_utf8(list).unwrap();
     assert_eq!(list.matches("<DataSet timestep=").count(), 6);
     assert!(list.contains("file=\"a &amp; b_frames/frame_000005.vtp\""), "{list}");
-    let bytes = fs::read(desk.path("a & b_frames/frame_000005.vtp")).unwrap();
+    let bytes = fs::read(folder.path("a & b_frames/frame_000005.vtp")).unwrap();
     let (places, velocities) =
         (vectors(array(&bytes, "Points")), vectors(array(&bytes, "velocity")));
     let (forces, bodies) = (vectors(array(&bytes, "force")), array(&bytes, "body"));
@@ -295,24 +298,27 @@ fn a_vtp_knows_place_velocity_and_force_of_every_particle() {
 }
 
 #[test]
-fn a_pvd_takes_the_place_of_an_old_one_and_of_nothing_else() {
-    let desk = Desk::new();
+fn a_pvd_replaces_a_previous_export_but_no_other_files() {
+    let folder = OutputFolder::new();
     let force = ExportOptions { force: true, ..ExportOptions::default() };
-    desk.export(&replay(SCENE, 9), "a.pvd", ExportOptions::default()).unwrap();
-    let again = desk.export(&replay(SCENE, 2), "a.pvd", ExportOptions::default());
-    assert!(matches!(again, Err(ExportError::Taken(_))));
-    desk.export(&replay(SCENE, 2), "a.pvd", force.clone()).unwrap();
-    assert_eq!(fs::read_dir(desk.path("a_frames")).unwrap().count(), 2);
-    fs::write(desk.path("a_frames/mine.txt"), "mine").unwrap();
-    let error = desk.export(&replay(SCENE, 3), "a.pvd", force).unwrap_err().to_string();
+    folder.export(&replay(SCENE, 9), "a.pvd", ExportOptions::default()).unwrap();
+    let again = folder.export(&replay(SCENE, 2), "a.pvd", ExportOptions::default());
+    assert!(matches!(again, Err(ExportError::Exists(_))));
+    folder.export(&replay(SCENE, 2), "a.pvd", force.clone()).unwrap();
+    assert_eq!(fs::read_dir(folder.path("a_frames")).unwrap().count(), 2);
+    fs::write(folder.path("a_frames/mine.txt"), "mine").unwrap();
+    let error = folder.export(&replay(SCENE, 3), "a.pvd", force).unwrap_err().to_string();
     assert!(error.contains("mine.txt"), "{error}");
-    assert_eq!((desk.names().len(), fs::read_dir(desk.path("a_frames")).unwrap().count()), (2, 3));
+    assert_eq!(
+        (folder.names().len(), fs::read_dir(folder.path("a_frames")).unwrap().count()),
+        (2, 3)
+    );
 }
 
 #[test]
-fn a_gif_plays_the_frames_in_their_time() {
+fn a_gif_plays_in_real_time() {
     let replay = replay(SCENE, 26);
-    let bytes = Desk::new().bytes(&replay, "a.gif", small());
+    let bytes = OutputFolder::new().bytes(&replay, "a.gif", small());
     let mut options = ::gif::DecodeOptions::new();
     options.set_color_output(::gif::ColorOutput::RGBA);
     let mut decoder = options.read_info(bytes.as_slice()).unwrap();
@@ -331,10 +337,11 @@ fn a_gif_plays_the_frames_in_their_time() {
             first = canvas.clone();
         }
     }
-    // every second frame of 50 a second: 25 a second, and the last one rests
+    // every second of 50 frames per second, and a longer delay after the last one
     assert_eq!((delays.len(), &delays[..3], delays[12]), (13, &[4, 4, 4][..], 100));
     assert!(first != canvas && first.chunks_exact(4).all(|pixel| pixel[3] == 255));
-    let last = Desk::new().bytes(&replay, "a.png", ExportOptions { at: Some(0.48), ..small() });
+    let last =
+        OutputFolder::new().bytes(&replay, "a.png", ExportOptions { at: Some(0.48), ..small() });
     let mut reader = ::png::Decoder::new(std::io::Cursor::new(last)).read_info().unwrap();
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut pixels).unwrap();
@@ -346,11 +353,11 @@ fn a_gif_plays_the_frames_in_their_time() {
 }
 
 #[test]
-fn a_view_is_heeded() {
+fn the_view_changes_the_image() {
     let replay = replay(SCENE, 3);
     let seen = |yaw: f64, pitch: f64, zoom: f64| {
         let view = Some(View { yaw, pitch, zoom });
-        Desk::new().bytes(&replay, "a.png", ExportOptions { view, ..small() })
+        OutputFolder::new().bytes(&replay, "a.png", ExportOptions { view, ..small() })
     };
     let pictures =
         [seen(0.0, 0.3, 1.0), seen(1.0, 0.3, 1.0), seen(0.0, 1.5, 1.0), seen(0.0, 0.3, 3.0)];
@@ -360,10 +367,10 @@ fn a_view_is_heeded() {
 }
 
 #[test]
-fn frames_are_chosen_by_time_and_rate() {
+fn frames_are_selected_by_time_and_rate() {
     let replay = replay(SCENE, 51);
     let rows = |options: ExportOptions| {
-        let text = String::from_utf8(Desk::new().bytes(&replay, "a.csv", options)).unwrap();
+        let text = String::from_utf8(OutputFolder::new().bytes(&replay, "a.csv", options)).unwrap();
         let times =
             text.lines().skip(1).step_by(3).map(|row| row.split(',').next().unwrap().parse());
         times.collect::<Result<Vec<f64>, _>>().unwrap()
@@ -379,29 +386,32 @@ fn frames_are_chosen_by_time_and_rate() {
     assert!(near(&of(Some(1e-6), None, None), &[0.0]));
     assert!(near(&of(None, Some(0.3), Some(0.34)), &[0.3, 0.32, 0.34]));
     let none = ExportOptions { from: Some(7.0), ..ExportOptions::default() };
-    let error = Desk::new().export(&replay, "a.csv", none).unwrap_err();
-    assert!(error.is_wrong_call() && error.to_string().contains("51 from 0 s to 1"), "{error}");
+    let error = OutputFolder::new().export(&replay, "a.csv", none).unwrap_err();
+    assert!(
+        error.is_invalid_request() && error.to_string().contains("51 frames, from 0 s to 1"),
+        "{error}"
+    );
 }
 
 #[test]
-fn whoever_stops_an_export_finds_nothing() {
+fn a_stopped_export_leaves_no_files() {
     let replay = replay(SCENE, 5);
-    for (ending, _) in Format::ALL {
-        let desk = Desk::new();
-        let options = if matches!(ending, "png" | "gif" | "mp4") {
+    for (extension, _) in Format::ALL {
+        let folder = OutputFolder::new();
+        let options = if matches!(extension, "png" | "gif" | "mp4") {
             small()
         } else {
             ExportOptions::default()
         };
-        let export = Export::new(&desk.path(&format!("a.{ending}")), options).unwrap();
+        let export = Export::new(&folder.path(&format!("a.{extension}")), options).unwrap();
         let result = export.write(&replay, &mut |_, _| false);
         match result {
             Err(ExportError::Stopped) => {}
-            // without the program it does not come to that
-            Err(ExportError::NoFfmpeg) if ending == "mp4" => {}
-            other => panic!("{ending}: {other:?}"),
+            // if ffmpeg is not installed, the export fails first
+            Err(ExportError::NoFfmpeg) if extension == "mp4" => {}
+            other => panic!("{extension}: {other:?}"),
         }
-        assert!(desk.names().is_empty(), "{ending}: {:?}", desk.names());
+        assert!(folder.names().is_empty(), "{extension}: {:?}", folder.names());
     }
 }
 
@@ -409,7 +419,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn any_options_are_heeded_or_refused(
+    fn any_options_are_accepted_or_rejected(
         format in 0usize..4,
         fps in proptest::option::of(any::<f64>()),
         from in proptest::option::of(-1.0..1.0f64),
@@ -418,14 +428,14 @@ proptest! {
     ) {
         static REPLAY: std::sync::OnceLock<Replay> = std::sync::OnceLock::new();
         let replay = REPLAY.get_or_init(|| replay(SCENE, 8));
-        let desk = Desk::new();
+        let folder = OutputFolder::new();
         let options = ExportOptions { fps, from, to_time, at, ..ExportOptions::default() };
         let name = format!("a.{}", Format::ALL[format].0);
-        match desk.export(replay, &name, options) {
-            Ok(exported) => prop_assert!(exported.frames > 0 && desk.path(&name).is_file()),
+        match folder.export(replay, &name, options) {
+            Ok(exported) => prop_assert!(exported.frames > 0 && folder.path(&name).is_file()),
             Err(error) => {
-                prop_assert!(error.is_wrong_call(), "{}", error);
-                prop_assert!(desk.names().is_empty());
+                prop_assert!(error.is_invalid_request(), "{}", error);
+                prop_assert!(folder.names().is_empty());
             }
         }
     }

@@ -1,7 +1,8 @@
-//! `.pvd` and a folder of `.vtp`: a surface with all bodies in each file, for ParaView and PyVista.
+//! `.pvd` and a folder of `.vtp` files, one per frame with all bodies, for ParaView and PyVista.
 //!
-//! Kitware, *VTK XML file formats*. Arrays are appended as raw little-endian numbers, each after its
-//! length in bytes. The `.pvd` that lists the files is written last.
+//! Reference: Kitware, *VTK XML file formats*. The arrays are raw appended data: little-endian numbers,
+//! each array preceded by its length in bytes. The `.pvd` file, which lists the frames, gets its final
+//! name last.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -9,114 +10,118 @@ use std::path::{Path, PathBuf};
 
 use tumble::{BodyModel, DMat3, DVec3, Mesh, World};
 
-use super::draft::{beside, folder_of};
-use super::{ExportError, Exported, Job, Watch, tell};
+use super::error::ExportError;
+use super::job::{Exported, Job, Progress, report};
+use super::partial_file::{parent_folder, temporary_path};
 use crate::appearance::surface_of;
 use crate::replay::{Pose, ReplayFrame};
 
-pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
-    let mut out = job.draft()?;
-    let folder = Folder::create(job)?;
-    let frames = job.chosen.frames();
-    let cells = Cells::of(&job.replay.world)?;
+pub(super) fn write(job: &Job, progress: &mut Progress) -> Result<Exported, ExportError> {
+    let mut out = job.create_file()?;
+    let folder = FrameFolder::create(job)?;
+    let frames = job.selection.frames();
+    let topology = Topology::new(&job.replay.world)?;
     let mut bytes = 0;
-    let mut list = String::new();
+    let mut datasets = String::new();
     for (index, frame) in frames.clone().enumerate() {
-        tell(watch, index, frames.len())?;
+        report(progress, index, frames.len())?;
         let name = format!("frame_{index:06}.vtp");
         let path = folder.temporary.join(&name);
-        let written = write_frame(&path, &job.replay.world, &cells, frame);
-        bytes += written.map_err(|error| job.failed(error))?;
-        list += &format!(
+        let written = write_frame(&path, &job.replay.world, &topology, frame);
+        bytes += written.map_err(|error| job.write_error(error))?;
+        datasets += &format!(
             "    <DataSet timestep=\"{:?}\" part=\"0\" file=\"{}/{name}\"/>\n",
             frame.time,
-            escaped(&folder.name),
+            escape(&folder.name),
         );
     }
     write!(
         out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
-         byte_order=\"LittleEndian\">\n  <Collection>\n{list}  </Collection>\n</VTKFile>\n",
+         byte_order=\"LittleEndian\">\n  <Collection>\n{datasets}  </Collection>\n</VTKFile>\n",
     )
-    .map_err(|error| job.failed(error))?;
+    .map_err(|error| job.write_error(error))?;
     folder.finish(job)?;
     Ok(Exported { frames: frames.len(), bytes: bytes + out.finish()? })
 }
 
-/// The folder of the frames, under another name until all of them are there.
-struct Folder {
+/// The folder of the `.vtp` files. It has a temporary name until it is complete.
+struct FrameFolder {
     name: String,
     path: PathBuf,
     temporary: PathBuf,
 }
 
-impl Folder {
+impl FrameFolder {
     fn create(job: &Job) -> Result<Self, ExportError> {
-        let stem = job.export.path.file_stem().and_then(|stem| stem.to_str());
+        let stem = job.path.file_stem().and_then(|stem| stem.to_str());
         let stem = stem.ok_or_else(|| {
-            ExportError::Unfit("the name of a .pvd file must be text in UTF-8".to_owned())
+            ExportError::Unsupported("the name of a .pvd file must be valid UTF-8".to_owned())
         })?;
-        // not the bare stem: out/cat.pvd is to stand beside the run out/cat
+        // with a suffix, because out/cat.pvd is often written beside the run out/cat
         let name = format!("{stem}_frames");
-        let path = folder_of(&job.export.path).join(&name);
-        let folder = Self { name, temporary: beside(&path), path };
+        let path = parent_folder(job.path).join(&name);
+        let folder = Self { name, temporary: temporary_path(&path), path };
         if folder.path.symlink_metadata().is_ok() {
-            if !job.export.options.force {
-                return Err(ExportError::Taken(folder.path.clone()));
+            if !job.options.force {
+                return Err(ExportError::Exists(folder.path.clone()));
             }
-            folder.check_old()?;
+            folder.check_replaceable()?;
         }
-        fs::create_dir(&folder.temporary).map_err(|error| job.failed(error))?;
+        fs::create_dir(&folder.temporary).map_err(|error| job.write_error(error))?;
         Ok(folder)
     }
 
-    /// Only a folder that holds nothing but frames is ours to replace.
-    fn check_old(&self) -> Result<(), ExportError> {
-        let failed = |error| ExportError::Write(self.path.clone(), error);
-        for entry in fs::read_dir(&self.path).map_err(failed)? {
-            let name = entry.map_err(failed)?.file_name();
+    /// Refuses to replace a folder that contains anything but frames.
+    fn check_replaceable(&self) -> Result<(), ExportError> {
+        let write_error = |error| ExportError::Write(self.path.clone(), error);
+        for entry in fs::read_dir(&self.path).map_err(write_error)? {
+            let name = entry.map_err(write_error)?.file_name();
             let name = name.to_string_lossy();
             if !(name.starts_with("frame_") && name.ends_with(".vtp")) {
-                let other =
-                    format!("the folder of an old export also holds {name}; move that away");
-                return Err(failed(io::Error::other(other)));
+                let problem =
+                    format!("the folder of the previous export also contains {name}; move it away");
+                return Err(write_error(io::Error::other(problem)));
             }
         }
         Ok(())
     }
 
-    /// Takes the place of an old folder.
+    /// Renames the folder to its final name. Replaces the folder of a previous export.
     fn finish(&self, job: &Job) -> Result<(), ExportError> {
-        let failed = |error| ExportError::Write(self.path.clone(), error);
+        let write_error = |error| ExportError::Write(self.path.clone(), error);
         if self.path.symlink_metadata().is_ok() {
-            self.check_old()?;
-            // without its list, an old export does not look whole
-            let _ = fs::remove_file(&job.export.path);
-            fs::remove_dir_all(&self.path).map_err(failed)?;
+            self.check_replaceable()?;
+            // remove the list first, so that a half-replaced export does not look complete
+            let _ = fs::remove_file(job.path);
+            fs::remove_dir_all(&self.path).map_err(write_error)?;
         }
-        fs::rename(&self.temporary, &self.path).map_err(failed)
+        fs::rename(&self.temporary, &self.path).map_err(write_error)
     }
 }
 
-impl Drop for Folder {
+impl Drop for FrameFolder {
     fn drop(&mut self) {
-        // after a rename it is gone; otherwise the first error is the one to tell
+        // after a rename the folder does not exist; after an error, that error is reported instead
         let _ = fs::remove_dir_all(&self.temporary);
     }
 }
 
-/// What is the same in every frame: which points make a cell.
-struct Cells {
-    points: usize,
+/// Points and cells, which are the same in every frame.
+struct Topology {
+    point_count: usize,
+    /// Points drawn as vertex cells.
     vertices: Vec<i32>,
+    /// Points of the triangles, three per triangle.
     triangles: Vec<i32>,
+    /// Index of the body of each point.
     body: Vec<i32>,
-    /// 1 for a particle, 0 for what is only drawn.
+    /// 1 for a particle, 0 for a vertex of the surface only.
     is_particle: Vec<u8>,
 }
 
-/// Whether the vertices of the surface are the particles.
-fn is_drawn_by_particles(body: &BodyModel, surface: &Mesh) -> bool {
+/// Whether the vertices of the surface are the particles, in the same order.
+fn are_vertices_particles(body: &BodyModel, surface: &Mesh) -> bool {
     let particles = body.shape.particles();
     surface.vertices.len() == particles.len()
         && surface
@@ -126,17 +131,22 @@ fn is_drawn_by_particles(body: &BodyModel, surface: &Mesh) -> bool {
             .all(|(vertex, particle)| *vertex == particle)
 }
 
-/// The points of a body in its own frame: its particles, then vertices that are none.
+/// The points of a body in the body frame (m), and whether each is a particle: first the particles, then
+/// the vertices of the surface unless they are the particles.
 fn points<'a>(body: &'a BodyModel, surface: &'a Mesh) -> impl Iterator<Item = (DVec3, bool)> + 'a {
-    let only_drawn: &[DVec3] =
-        if is_drawn_by_particles(body, surface) { &[] } else { &surface.vertices };
-    let particles = body.shape.particles().iter().map(|place| (place, true));
-    particles.chain(only_drawn.iter().map(|&place| (place, false)))
+    let vertices: &[DVec3] =
+        if are_vertices_particles(body, surface) { &[] } else { &surface.vertices };
+    let particles = body.shape.particles().iter().map(|point| (point, true));
+    particles.chain(vertices.iter().map(|&point| (point, false)))
 }
 
-impl Cells {
-    fn of(world: &World) -> Result<Self, ExportError> {
-        let too_many = || ExportError::Unfit("more points than a .vtp can number".to_owned());
+impl Topology {
+    fn new(world: &World) -> Result<Self, ExportError> {
+        let too_many = || {
+            ExportError::Unsupported(
+                "the bodies have more than 2147483647 points, the maximum of a .vtp".to_owned(),
+            )
+        };
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         let (mut body, mut is_particle) = (Vec::new(), Vec::new());
         for (index, model) in world.bodies().map(|body| body.model()).enumerate() {
@@ -146,95 +156,99 @@ impl Cells {
             body.resize(is_particle.len(), index as i32);
             i32::try_from(is_particle.len()).map_err(|_| too_many())?;
             let particles = model.shape.particles().len();
-            let is_same = is_drawn_by_particles(model, &surface);
-            let base = if is_same { first } else { first + particles } as i32;
+            let are_shared = are_vertices_particles(model, &surface);
+            let base = if are_shared { first } else { first + particles } as i32;
             triangles
                 .extend(surface.triangles.iter().flatten().map(|&corner| base + corner as i32));
-            // particles that no triangle shows are shown as points
-            if !is_same || surface.triangles.is_empty() {
+            // particles that are not vertices of triangles are drawn as points
+            if !are_shared || surface.triangles.is_empty() {
                 vertices.extend((first..first + particles).map(|point| point as i32));
             }
         }
-        Ok(Self { points: is_particle.len(), vertices, triangles, body, is_particle })
+        Ok(Self { point_count: is_particle.len(), vertices, triangles, body, is_particle })
     }
 }
 
-/// Writes one frame; returns its size in bytes.
-fn write_frame(path: &Path, world: &World, cells: &Cells, frame: &ReplayFrame) -> io::Result<u64> {
-    let mut arrays = Arrays::default();
-    let (mut places, mut velocities, mut forces) = (Vec::new(), Vec::new(), Vec::new());
+/// Writes one frame. Returns the size of the file in bytes.
+fn write_frame(
+    path: &Path,
+    world: &World,
+    topology: &Topology,
+    frame: &ReplayFrame,
+) -> io::Result<u64> {
+    let mut data = AppendedData::default();
+    let (mut positions, mut velocities, mut forces) = (Vec::new(), Vec::new(), Vec::new());
     for (body, pose) in world.bodies().zip(&frame.poses) {
-        let turn = DMat3::from_quat(pose.orientation);
-        for (place, is_particle) in points(body.model(), &surface_of(body.model())) {
-            let (arm, model) = (turn * place, body.model());
+        let rotation = DMat3::from_quat(pose.orientation);
+        for (point, is_particle) in points(body.model(), &surface_of(body.model())) {
+            let (arm, model) = (rotation * point, body.model());
             let force = if is_particle {
                 spring_force(world, model, pose.position + arm)
             } else {
                 DVec3::ZERO
             };
-            places.extend((pose.position + arm).as_vec3().to_array());
+            positions.extend((pose.position + arm).as_vec3().to_array());
             velocities.extend(velocity(pose, arm).as_vec3().to_array());
             forces.extend(force.as_vec3().to_array());
         }
     }
-    let ends = |each: usize, count: usize| (1..=count).map(move |i| (i * each) as i32);
-    let (dots, faces) = (cells.vertices.len(), cells.triangles.len() / 3);
-    let time = arrays.add("Float64", "TimeValue\" NumberOfTuples=\"1", 1, frame.time.to_le_bytes());
-    let velocities = arrays.floats("velocity", &velocities);
-    let forces = arrays.floats("force", &forces);
-    let bodies = arrays.integers("body", cells.body.iter().copied());
-    let particle = arrays.add("UInt8", "particle", 1, cells.is_particle.iter().copied());
-    let places = arrays.floats("Points", &places);
-    let cell = |arrays: &mut Arrays, corners: &[i32], each: usize, count: usize| {
-        arrays.integers("connectivity", corners.iter().copied())
-            + &arrays.integers("offsets", ends(each, count))
+    let offsets = |size: usize, count: usize| (1..=count).map(move |i| (i * size) as i32);
+    let (vertex_count, triangle_count) = (topology.vertices.len(), topology.triangles.len() / 3);
+    let time = data.add("Float64", "TimeValue\" NumberOfTuples=\"1", 1, frame.time.to_le_bytes());
+    let velocities = data.add_vectors("velocity", &velocities);
+    let forces = data.add_vectors("force", &forces);
+    let bodies = data.add_integers("body", topology.body.iter().copied());
+    let particle = data.add("UInt8", "particle", 1, topology.is_particle.iter().copied());
+    let positions = data.add_vectors("Points", &positions);
+    let cells = |data: &mut AppendedData, points: &[i32], size: usize, count: usize| {
+        data.add_integers("connectivity", points.iter().copied())
+            + &data.add_integers("offsets", offsets(size, count))
     };
-    let dots_of = cell(&mut arrays, &cells.vertices, 1, dots);
-    let faces_of = cell(&mut arrays, &cells.triangles, 3, faces);
+    let vertex_cells = cells(&mut data, &topology.vertices, 1, vertex_count);
+    let triangle_cells = cells(&mut data, &topology.triangles, 3, triangle_count);
     let mut out = BufWriter::with_capacity(1 << 16, File::create_new(path)?);
     write!(
         out,
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" \
          byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n{time}\
-         </FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{dots}\" NumberOfLines=\"0\" \
-         NumberOfStrips=\"0\" NumberOfPolys=\"{faces}\">\n<PointData Vectors=\"velocity\" \
-         Scalars=\"body\">\n{velocities}{forces}{bodies}{particle}</PointData>\n<Points>\n{places}\
-         </Points>\n<Verts>\n{dots_of}</Verts>\n<Polys>\n{faces_of}</Polys>\n</Piece>\n</PolyData>\n\
+         </FieldData>\n<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{vertex_count}\" NumberOfLines=\"0\" \
+         NumberOfStrips=\"0\" NumberOfPolys=\"{triangle_count}\">\n<PointData Vectors=\"velocity\" \
+         Scalars=\"body\">\n{velocities}{forces}{bodies}{particle}</PointData>\n<Points>\n{positions}\
+         </Points>\n<Verts>\n{vertex_cells}</Verts>\n<Polys>\n{triangle_cells}</Polys>\n</Piece>\n</PolyData>\n\
          <AppendedData encoding=\"raw\">\n_",
-        cells.points,
+        topology.point_count,
     )?;
-    out.write_all(&arrays.bytes)?;
+    out.write_all(&data.bytes)?;
     write!(out, "\n</AppendedData>\n</VTKFile>\n")?;
     let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
     Ok(file.metadata()?.len())
 }
 
-/// v + ω × R r (m/s).
+/// Velocity of a point at `arm` = R r from the centre of mass (m): v + ω × R r (m/s).
 fn velocity(pose: &Pose, arm: DVec3) -> DVec3 {
     pose.velocity + pose.angular_velocity.cross(arm)
 }
 
-/// What the springs of all walls do to a particle at `place` (m): Σ k δ n (N), without dashpots and
-/// friction.
-fn spring_force(world: &World, body: &BodyModel, place: DVec3) -> DVec3 {
+/// Spring force of all walls on a particle at `position` (m): Σ k δ n (N), without dashpots and friction.
+fn spring_force(world: &World, body: &BodyModel, position: DVec3) -> DVec3 {
     let walls = world.model().walls.iter().zip(&body.contacts);
     walls
-        .filter(|(wall, _)| wall.depth(place) > 0.0)
-        .map(|(wall, law)| wall.normal * (law.stiffness * wall.depth(place)))
+        .filter(|(wall, _)| wall.depth(position) > 0.0)
+        .map(|(wall, law)| wall.normal * (law.stiffness * wall.depth(position)))
         .sum()
 }
 
-/// Arrays appended to the file, each after its length.
+/// The appended data of a file: arrays, each preceded by its length in bytes (`UInt64`).
 #[derive(Default)]
-struct Arrays {
+struct AppendedData {
     bytes: Vec<u8>,
 }
 
-impl Arrays {
-    /// Appends numbers; returns what refers to them.
+impl AppendedData {
+    /// Appends an array. Returns the `DataArray` element that refers to it.
     fn add(
         &mut self,
-        kind: &str,
+        data_type: &str,
         name: &str,
         components: usize,
         bytes: impl IntoIterator<Item = u8>,
@@ -250,21 +264,21 @@ impl Arrays {
             String::new()
         };
         format!(
-            "<DataArray type=\"{kind}\" Name=\"{name}\"{components} format=\"appended\" \
+            "<DataArray type=\"{data_type}\" Name=\"{name}\"{components} format=\"appended\" \
              offset=\"{offset}\"/>\n"
         )
     }
 
-    fn floats(&mut self, name: &str, vectors: &[f32]) -> String {
+    fn add_vectors(&mut self, name: &str, vectors: &[f32]) -> String {
         self.add("Float32", name, 3, vectors.iter().flat_map(|number| number.to_le_bytes()))
     }
 
-    fn integers(&mut self, name: &str, numbers: impl Iterator<Item = i32>) -> String {
+    fn add_integers(&mut self, name: &str, numbers: impl Iterator<Item = i32>) -> String {
         self.add("Int32", name, 1, numbers.flat_map(i32::to_le_bytes))
     }
 }
 
-/// What may stand between the quotes of XML.
-fn escaped(text: &str) -> String {
+/// `text` as an attribute value of XML.
+fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }

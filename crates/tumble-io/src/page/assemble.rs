@@ -1,10 +1,10 @@
-//! Modules, style and data into one file.
+//! Combines modules, style sheet and data into one HTML file.
 //!
-//! Each module becomes a function that is called at once and returns what the module exports; an
-//! import becomes a look-up in what an earlier one returned. So every name stays private to its
-//! module, as it is when the browser loads the modules themselves. For that the modules keep a
-//! simple form, which the tests check: one import a line, at the start, and `export` only before a
-//! `const`, a `function` or a `class` at the start of a line.
+//! Each JavaScript module becomes a function that is called immediately and returns the exports of the
+//! module. An import becomes a destructuring of the object that an earlier module returned. So names
+//! stay private to their module, as when a browser loads the modules. This requires a simple form of
+//! the modules, which the tests check: one import per line, imports first, and `export` only before
+//! `const`, `function` or `class` at the start of a line.
 
 use std::fmt::Write;
 
@@ -12,8 +12,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use sha2::{Digest, Sha256};
 
-use super::film::Film;
-use super::head::Head;
+use super::header::Header;
+use super::recording::Recording;
 
 macro_rules! modules {
     ($($name:literal),* $(,)?) => {
@@ -21,12 +21,13 @@ macro_rules! modules {
     };
 }
 
+/// A JavaScript module of the viewer.
 pub(super) struct Module {
     pub name: &'static str,
     pub text: &'static str,
 }
 
-/// In an order in which each needs only those before it.
+/// All modules. Each imports only from earlier ones.
 pub(super) const MODULES: [Module; 28] = modules![
     "math",
     "format",
@@ -65,29 +66,29 @@ const STYLE_LINK: &str = r#"<link rel="stylesheet" href="style.css">"#;
 const SCRIPT_LINK: &str = r#"<script type="module" src="main.js"></script>"#;
 const TITLE: &str = "<title>tumble</title>";
 
-/// The page with a run inside: one file that needs nothing else, as `motion.html` in a run's folder.
-pub fn motion_html(head: &Head, film: &Film) -> String {
-    let mut head = head.clone();
-    head.frame_count = film.frame_count();
-    head.frames_recorded = film.seen();
+/// The page with a recorded run, as `motion.html` in the folder of a run. It loads no other file.
+pub fn motion_html(header: &Header, recording: &Recording) -> String {
+    let mut header = header.clone();
+    header.frame_count = recording.frame_count();
+    header.frames_recorded = recording.recorded_count();
     let mut data = String::new();
     data.push_str("<script type=\"application/json\" id=\"tumble-head\">");
-    data.push_str(&head.to_json());
+    data.push_str(&header.to_json());
     data.push_str("</script>\n<script type=\"text/plain\" id=\"tumble-frames\">");
-    STANDARD.encode_string(film.records(), &mut data);
+    STANDARD.encode_string(recording.records(), &mut data);
     data.push_str("</script>\n");
-    page(&format!("{} – tumble", head.name()), &data, "'none'")
+    page(&format!("{} – tumble", header.name()), &data, "'none'")
 }
 
-/// The page without data: it asks the server that it came from, over a WebSocket at `/live`.
+/// The page without a run. It connects to its server over a WebSocket at `/live`.
 pub fn live_html() -> String {
     page("tumble", "", "'self' ws: wss:")
 }
 
-/// `connect`: whom the page may talk to.
+/// The page. `connect` lists the connections that its content security policy permits.
 fn page(title: &str, data: &str, connect: &str) -> String {
     let script = script();
-    // the browser runs this very script and no other, and fetches nothing
+    // permits only this script and style sheet, and no requests except `connect`
     let policy = format!(
         "default-src 'none'; script-src '{}'; style-src '{}'; img-src data: blob:; connect-src {connect}; \
          base-uri 'none'; form-action 'none'",
@@ -100,7 +101,7 @@ fn page(title: &str, data: &str, connect: &str) -> String {
     );
     let html = PAGE.replacen(TITLE, &meta, 1);
     let html = html.replacen(STYLE_LINK, &format!("<style>{STYLE}</style>"), 1);
-    // the data may be large: they are copied once
+    // the data may be large, so they are copied only once
     let (before, after) = html.split_once(SCRIPT_LINK).unwrap_or((&html, ""));
     [before, data, "<script>", &script, "</script>", after].concat()
 }
@@ -109,7 +110,7 @@ fn hash(text: &str) -> String {
     format!("sha256-{}", STANDARD.encode(Sha256::digest(text)))
 }
 
-/// Text as it stands in HTML.
+/// `text` as text or an attribute value of HTML.
 pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -118,7 +119,7 @@ pub(super) fn escape(text: &str) -> String {
             '<' => escaped.push_str("&lt;"),
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
-            // letters that HTML does not allow
+            // control characters that HTML does not permit
             '\0'..='\u{8}' | '\u{b}' | '\u{c}' | '\u{e}'..='\u{1f}' | '\u{7f}' => {
                 escaped.push('\u{fffd}');
             }
@@ -128,14 +129,14 @@ pub(super) fn escape(text: &str) -> String {
     escaped
 }
 
-/// All modules as one script.
+/// All modules combined into one script.
 pub(super) fn script() -> String {
     let mut script = String::from("\"use strict\";\n");
     for module in &MODULES {
         let mut exports = Vec::new();
         let _ = writeln!(script, "const module_{} = (() => {{", module.name);
         for line in module.text.lines() {
-            script.push_str(&plain(line, &mut exports));
+            script.push_str(&convert_line(line, &mut exports));
             script.push('\n');
         }
         let _ = writeln!(script, "return {{ {} }};\n}})();", exports.join(", "));
@@ -143,24 +144,24 @@ pub(super) fn script() -> String {
     script
 }
 
-/// A line of a module as it stands in the script; what it exports is added to `exports`.
-fn plain<'a>(line: &'a str, exports: &mut Vec<&'a str>) -> String {
-    if let Some((names, from)) = import(line) {
+/// Converts a line of a module for the script. Adds a name that it exports to `exports`.
+fn convert_line<'a>(line: &'a str, exports: &mut Vec<&'a str>) -> String {
+    if let Some((names, from)) = parse_import(line) {
         return format!("const {{ {names} }} = module_{from};");
     }
     let Some(rest) = line.strip_prefix("export ") else {
         return line.to_owned();
     };
-    let words = ["const ", "function ", "class ", "async function "];
-    if let Some(rest) = words.iter().find_map(|word| rest.strip_prefix(word)) {
+    let keywords = ["const ", "function ", "class ", "async function "];
+    if let Some(rest) = keywords.iter().find_map(|keyword| rest.strip_prefix(keyword)) {
         let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '$'));
         exports.push(&rest[..end.unwrap_or(rest.len())]);
     }
     rest.to_owned()
 }
 
-/// The names that a line imports, and from which module.
-pub(super) fn import(line: &str) -> Option<(&str, &str)> {
+/// The names that an import line imports, and the name of the module that exports them.
+pub(super) fn parse_import(line: &str) -> Option<(&str, &str)> {
     let (names, rest) = line.strip_prefix("import {")?.split_once('}')?;
     let from = rest.strip_prefix(" from './")?.strip_suffix(".js';")?;
     Some((names.trim(), from))

@@ -1,21 +1,21 @@
-//! The viewer: one HTML page that shows a run, and `motion.html`, the same page with a run inside.
+//! The viewer page: an HTML page that shows a run.
 //!
-//! The page itself lives in the folder `viewer` of the project as plain HTML, CSS and JavaScript
-//! modules. [`motion_html`] and [`live_html`] put them together into one file that needs nothing
-//! else: no network, no server, no other file.
+//! The source of the page is in the folder `viewer` of the project, as HTML, CSS and JavaScript
+//! modules. [`motion_html`] combines them and a recorded run into `motion.html`, a single file that
+//! works offline. [`live_html`] is the same page without a run; it reads frames from a running server.
 //!
-//! | file | does |
+//! | file | contents |
 //! |---|---|
-//! | `head` | what is constant during a run, as JSON |
-//! | `film` | the frames, as binary records |
-//! | `assemble` | modules, style and data into one file |
+//! | `header` | the constant data of a run, as JSON |
+//! | `recording` | the frames, as binary records |
+//! | `assemble` | combines modules, style sheet and data into one file |
 
 mod assemble;
-mod film;
-mod head;
+mod header;
+mod recording;
 #[cfg(test)]
 mod tests;
 
 pub use assemble::{live_html, motion_html};
-pub use film::{BodyFrame, Film, encode_frame, record_size};
-pub use head::{Head, Parameter};
+pub use header::{Header, Parameter};
+pub use recording::{BodyFrame, Recording, encode_frame, record_size};

@@ -1,7 +1,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::assemble::{MODULES, escape, import, script};
+use super::assemble::{MODULES, escape, parse_import, script};
 use super::*;
 use crate::plot::EnergyRow;
 use crate::scene::{LoadOptions, Loaded, Source, load_builtin, load_text};
@@ -12,13 +12,13 @@ fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
     &text[from..from + length]
 }
 
-fn filmed(loaded: &Loaded, frames: u64) -> Film {
-    let mut film = Film::new(loaded.world.body_count());
+fn record(loaded: &Loaded, frames: u64) -> Recording {
+    let mut recording = Recording::new(loaded.world.body_count());
     for step in 0..frames {
         let row = EnergyRow { time: step as f64, ..EnergyRow::default() };
-        film.record(step, &row, BodyFrame::all(&loaded.world));
+        recording.record(step, &row, BodyFrame::all(&loaded.world));
     }
-    film
+    recording
 }
 
 fn task2() -> Loaded {
@@ -26,10 +26,10 @@ fn task2() -> Loaded {
 }
 
 #[test]
-fn what_goes_into_the_page_comes_out_of_it() {
+fn the_page_contains_header_and_frames() {
     let loaded = task2();
-    let film = filmed(&loaded, 3);
-    let html = motion_html(&Head::of(&loaded.scene, &loaded.world), &film);
+    let recording = record(&loaded, 3);
+    let html = motion_html(&Header::new(&loaded.scene, &loaded.world), &recording);
     let json = between(&html, "id=\"tumble-head\">", "</script>");
     let head: serde_json::Value = serde_json::from_str(json).unwrap();
     assert_eq!(head["type"], "head");
@@ -41,14 +41,14 @@ fn what_goes_into_the_page_comes_out_of_it() {
     assert_eq!(vertices.len(), 42 * 12);
     assert!(head["shapes"][0]["particles"].is_null());
     let frames = STANDARD.decode(between(&html, "id=\"tumble-frames\">", "</script>")).unwrap();
-    assert_eq!(frames, film.records());
+    assert_eq!(frames, recording.records());
     assert_eq!(frames.len(), 3 * record_size(1));
     let number = |at: usize| f64::from_le_bytes(frames[at..at + 8].try_into().unwrap());
     assert_eq!(number(record_size(1)), 1.0);
 }
 
 #[test]
-fn contact_is_what_the_walls_did_in_the_latest_step() {
+fn contact_is_the_wall_force_of_the_latest_step() {
     let mut loaded = task2();
     let weight = 42.0 * 9.8;
     let mut strongest: f64 = 0.0;
@@ -67,14 +67,14 @@ fn contact_is_what_the_walls_did_in_the_latest_step() {
 }
 
 #[test]
-fn names_cannot_break_out_of_the_page() {
+fn names_in_the_page_are_escaped() {
     let evil = "</script><script>alert(1)</script><!-- & \"";
     let text = "description = '</script><!--<script>'\n[[body]]\nshape = \"sphere\"\n";
     let source = Source { name: "evil".to_owned(), text: text.to_owned() };
     let loaded =
         load_text(evil, source, std::path::Path::new("."), &LoadOptions::default()).unwrap();
-    let html = motion_html(&Head::of(&loaded.scene, &loaded.world), &filmed(&loaded, 1));
-    let plain = motion_html(&Head::of(&task2().scene, &task2().world), &filmed(&task2(), 1));
+    let html = motion_html(&Header::new(&loaded.scene, &loaded.world), &record(&loaded, 1));
+    let plain = motion_html(&Header::new(&task2().scene, &task2().world), &record(&task2(), 1));
     for tag in ["<script", "</script>", "<!--", "<title>", "</title>"] {
         assert_eq!(html.matches(tag).count(), plain.matches(tag).count(), "{tag}");
     }
@@ -85,8 +85,9 @@ fn names_cannot_break_out_of_the_page() {
 }
 
 #[test]
-fn the_page_asks_for_nothing_outside() {
-    for html in [live_html(), motion_html(&Head::of(&task2().scene, &task2().world), &Film::new(1))]
+fn the_page_loads_nothing_from_outside() {
+    for html in
+        [live_html(), motion_html(&Header::new(&task2().scene, &task2().world), &Recording::new(1))]
     {
         for word in ["http://", "https://", " src=", "url(", "@import", "import ", "export "] {
             let allowed = html.replace("http://www.w3.org/2000/svg", "");
@@ -95,28 +96,28 @@ fn the_page_asks_for_nothing_outside() {
         assert!(html.contains("default-src 'none'"));
         assert!(html.starts_with("<!doctype html>"));
         assert!(html.trim_end().ends_with("</html>"));
-        // the page alone stays small
+        // size of the page without data
         assert!(html.len() < 400_000, "{}", html.len());
     }
     assert!(!live_html().contains("id=\"tumble-head\""));
 }
 
 #[test]
-fn modules_keep_the_form_that_makes_one_script_of_them() {
+fn modules_have_the_form_that_the_script_requires() {
     for (index, module) in MODULES.iter().enumerate() {
         let before: Vec<_> = MODULES[..index].iter().map(|module| module.name).collect();
         let mut code = false;
         for line in module.text.lines() {
             if line.starts_with("import") {
                 let (names, from) =
-                    import(line).unwrap_or_else(|| panic!("{}: {line}", module.name));
+                    parse_import(line).unwrap_or_else(|| panic!("{}: {line}", module.name));
                 assert!(before.contains(&from), "{} before {from}", module.name);
                 assert!(!names.contains(" as ") && !code, "{}: {line}", module.name);
                 let text = MODULES.iter().find(|other| other.name == from).unwrap().text;
                 for name in names.split(',').map(str::trim).filter(|name| !name.is_empty()) {
                     let found = ["const", "function", "class", "async function"]
                         .iter()
-                        .any(|word| exports(text, &format!("export {word} {name}")));
+                        .any(|word| has_export(text, &format!("export {word} {name}")));
                     assert!(found, "{} imports {name} from {from}", module.name);
                 }
             } else if !(line.is_empty() || line.starts_with("//")) {
@@ -136,7 +137,7 @@ fn modules_keep_the_form_that_makes_one_script_of_them() {
     assert!(!script().contains("\nexport "));
 }
 
-fn exports(text: &str, start: &str) -> bool {
+fn has_export(text: &str, start: &str) -> bool {
     text.lines().any(|line| {
         line.strip_prefix(start)
             .is_some_and(|rest| !rest.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
@@ -144,7 +145,7 @@ fn exports(text: &str, start: &str) -> bool {
 }
 
 #[test]
-fn every_module_of_the_folder_is_in_the_page() {
+fn every_module_in_the_viewer_folder_is_in_the_page() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../viewer");
     let mut files: Vec<_> = std::fs::read_dir(folder)
         .unwrap()
@@ -160,23 +161,23 @@ fn every_module_of_the_folder_is_in_the_page() {
 }
 
 #[test]
-fn a_long_film_is_thinned_out_and_keeps_both_ends() {
-    let mut film = Film::holding(record_size(0), 8);
+fn a_long_recording_is_thinned_out_and_keeps_both_ends() {
+    let mut recording = Recording::with_capacity(record_size(0), 8);
     for step in 0..1003 {
         let row = EnergyRow { time: step as f64, ..EnergyRow::default() };
-        film.record(step, &row, std::iter::empty());
-        let records = film.records();
-        assert_eq!(records.len(), film.frame_count() * record_size(0));
+        recording.record(step, &row, std::iter::empty());
+        let records = recording.records();
+        assert_eq!(records.len(), recording.frame_count() * record_size(0));
         let time = |record: &[u8]| f64::from_le_bytes(record[..8].try_into().unwrap());
         let times: Vec<_> = records.chunks(record_size(0)).map(time).collect();
         assert_eq!(times[0], 0.0);
         assert_eq!(times.last(), Some(&(step as f64)));
         assert!(times.len() <= 9 && times.is_sorted_by(|a, b| a < b), "{times:?}");
-        // apart from the last, evenly spaced
+        // evenly spaced, apart from the last frame
         let gaps: Vec<_> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         assert!(gaps.iter().rev().skip(1).all(|gap| *gap == gaps[0]), "{times:?}");
     }
-    assert_eq!(film.seen(), 1003);
-    let big = Film::new(1_000_000);
-    assert!(big.is_empty() && big.frame_count() == 0);
+    assert_eq!(recording.recorded_count(), 1003);
+    let large = Recording::new(1_000_000);
+    assert!(large.is_empty() && large.frame_count() == 0);
 }

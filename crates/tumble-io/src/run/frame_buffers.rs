@@ -1,6 +1,6 @@
 //! The frames that a run holds in memory for its pictures and its page.
 
-use crate::page::{BodyFrame, Film};
+use crate::page::{BodyFrame, Recording};
 use crate::picture::{Frame, Pose};
 use crate::plot::EnergyRow;
 
@@ -10,13 +10,13 @@ pub(super) struct FrameBuffers {
     /// For `energy.svg` and `motion.png`.
     pub pictures: FrameHistory,
     /// For `motion.html`.
-    pub page: Film,
+    pub page: Recording,
 }
 
 impl FrameBuffers {
     /// Empty buffers for a world of `body_count` bodies.
     pub fn new(body_count: usize) -> Self {
-        Self { pictures: FrameHistory::new(body_count), page: Film::new(body_count) }
+        Self { pictures: FrameHistory::new(body_count), page: Recording::new(body_count) }
     }
 
     /// Adds a frame: the step, the row of the energy ledger and all bodies.

@@ -140,7 +140,7 @@ impl<'a> Recorder<'a> {
         let png = motion_picture(scene, world, &frames)
             .map_err(|error| draw_error(MOTION_PICTURE_FILE, error.to_string()))?;
         self.folder.write_file(MOTION_PICTURE_FILE, &png)?;
-        let html = page::motion_html(&page::Head::of(scene, world), &page);
+        let html = page::motion_html(&page::Header::new(scene, world), &page);
         self.folder.write_file(MOTION_PAGE_FILE, html.as_bytes())?;
         Ok(row)
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use tumble::{MassModel, Mesh, Sampling, Shape, ShapeError, Surface, ball_integrals};
+use tumble::{MassModel, Mesh, Sampling, Shape, ShapeError, Surface, sphere_union_integrals};
 
 use super::description::{BodyScene, Geometry, MassScene, ShapeScene};
 use crate::mesh::{Format, parse_mesh, read_mesh};

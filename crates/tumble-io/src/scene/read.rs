@@ -95,7 +95,7 @@ fn integrator(top: &Reader) -> Integrator {
     }
 }
 
-fn walls_of_box(reader: Reader) -> Option<BoxScene> {
+fn box_walls(reader: Reader) -> Option<BoxScene> {
     let (min, max) = (reader.vector("min"), reader.vector("max"));
     for key in ["min", "max"] {
         if !reader.has(key) {

@@ -27,7 +27,7 @@ pub fn shape_scene(reader: &Reader) -> Option<ShapeScene> {
     names.push("cat");
     let mut primitive = match reader.choice("shape", &names)? {
         "cat" => return Some(ShapeScene::Cat),
-        name => Primitive::named(name)?,
+        name => Primitive::from_name(name)?,
     };
     let length = |key, target: &mut f64| {
         *target = reader.number(key, Range::Positive).unwrap_or(*target);

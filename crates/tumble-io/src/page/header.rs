@@ -1,4 +1,4 @@
-//! What the page must know once: shapes, bodies, walls and settings.
+//! The constant data of a run for the page: shapes, bodies, walls and settings.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -11,12 +11,14 @@ use tumble::{BodyModel, BodyView, DQuat, DVec3, Shape, WallBox, World};
 use crate::appearance::{is_kinematic, particle_radius, surface_of};
 use crate::scene::Scene;
 
-/// All that is constant during a run, as the page reads it.
+/// The constant data of a run, as the page reads it.
+///
+/// Arrays of vertices and indices are little-endian `f32` and `u32` numbers in base64.
 #[derive(Clone, Debug, Serialize)]
-pub struct Head {
+pub struct Header {
     /// Always `"head"`.
     #[serde(rename = "type")]
-    kind: &'static str,
+    message_type: &'static str,
     version: &'static str,
     name: String,
     description: Option<String>,
@@ -29,67 +31,71 @@ pub struct Head {
     velocity_damping_stiffness: f64,
     up: [f64; 3],
     interval: f64,
-    shapes: Vec<ShapeHead>,
-    bodies: Vec<BodyHead>,
-    walls: Vec<WallHead>,
+    shapes: Vec<ShapeHeader>,
+    bodies: Vec<BodyHeader>,
+    walls: Vec<WallHeader>,
     #[serde(rename = "box")]
-    box_walls: Option<BoxHead>,
-    /// What can be changed while it runs; empty in a file.
+    box_walls: Option<BoxHeader>,
+    /// Parameters that the live page can change; empty in `motion.html`.
     pub parameters: Vec<Parameter>,
-    /// Frames in the page.
+    /// Number of frames in the page.
     pub frame_count: usize,
-    /// Frames of the run, those that the page leaves out included.
+    /// Number of recorded frames, including those that the page omits.
     pub frames_recorded: u64,
 }
 
-/// A number that the live page can set.
+/// A parameter that the live page can change.
 #[derive(Clone, Debug, Serialize)]
 pub struct Parameter {
-    /// As for `tumble run --set`.
+    /// Key, as for `tumble run --set`.
     pub key: String,
-    /// Its value now.
+    /// Current value.
     pub value: f64,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// `"at once"` or `"at reset"`.
+    /// When a change takes effect: `"at once"` or `"at reset"`.
     pub applies: String,
-    /// Whether its slider is logarithmic.
+    /// Whether the slider is logarithmic.
     pub log: bool,
-    /// The slider's lower end.
+    /// Minimum of the slider.
     pub min: f64,
-    /// The slider's upper end.
+    /// Maximum of the slider.
     pub max: f64,
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct ShapeHead {
+struct ShapeHeader {
     vertices: String,
     triangles: String,
-    /// Nothing where the particles are the vertices, in their order.
+    /// Particles; `None` if they are the vertices, in the same order.
     particles: Option<String>,
     particle_count: usize,
-    /// Of the spheres about the particles (m); nothing where there are none.
+    /// Radius of the spheres around the particles (m), if there are any.
     particle_radius: Option<f64>,
+    /// Bounding radius (m).
     radius: f64,
-    /// Σ rᵢ (m) and Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) (m²), by rows: what the force of drag needs.
+    /// Σ rᵢ (m), for the drag force.
     first: [f64; 3],
+    /// Σ (rᵢ·rᵢ 1 − rᵢ rᵢᵀ) (m²) by rows, for the drag torque.
     second: [f64; 9],
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct BodyHead {
+struct BodyHeader {
     name: String,
     shape: usize,
     mass: f64,
     particle_mass: f64,
-    /// Whether something other than forces moves it.
+    /// Whether the body is kinematic.
     driven: bool,
+    /// Principal moments of inertia (kg·m²).
     moments: [f64; 3],
+    /// Principal axes in the body frame as a quaternion w, x, y, z.
     axes: [f64; 4],
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct WallHead {
+struct WallHeader {
     normal: [f64; 3],
     offset: f64,
     stiffness: f64,
@@ -97,23 +103,24 @@ struct WallHead {
 }
 
 #[derive(Clone, Debug, Serialize)]
-struct BoxHead {
+struct BoxHeader {
     min: [f64; 3],
     max: [f64; 3],
     orientation: [f64; 4],
     open: Vec<&'static str>,
 }
 
-impl Head {
-    /// Of a run: a scene and its world.
-    pub fn of(scene: &Scene, world: &World) -> Self {
-        let (shapes, shape_of) = shapes(world);
-        let bodies = world.bodies().zip(shape_of).map(|(body, shape)| of_body(&body, shape));
+impl Header {
+    /// The header of a run that starts with `world`, without frames and parameters.
+    pub fn new(scene: &Scene, world: &World) -> Self {
+        let (shapes, shape_of_body) = shape_headers(world);
+        let bodies =
+            world.bodies().zip(shape_of_body).map(|(body, shape)| body_header(&body, shape));
         let gravity = scene.gravity;
         let up =
             if gravity == DVec3::ZERO { DVec3::Y } else { -gravity.normalize_or(DVec3::NEG_Y) };
         Self {
-            kind: "head",
+            message_type: "head",
             version: env!("CARGO_PKG_VERSION"),
             name: scene.name.clone(),
             description: scene.description.clone(),
@@ -127,72 +134,72 @@ impl Head {
             interval: scene.output.interval,
             shapes,
             bodies: bodies.collect(),
-            walls: walls(world),
-            box_walls: scene.box_walls.as_ref().map(|own| of_box(&own.walls)),
+            walls: wall_headers(world),
+            box_walls: scene.box_walls.as_ref().map(|box_walls| box_header(&box_walls.walls)),
             parameters: Vec::new(),
             frame_count: 0,
             frames_recorded: 0,
         }
     }
 
-    /// Its name.
+    /// The name of the scene.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// As JSON that may stand inside a script element: without `<`, nothing in it can end the element
-    /// or begin a comment.
+    /// The header as JSON. `<` is escaped, so that the text can be placed in a script element of HTML.
     pub fn to_json(&self) -> String {
         let json = serde_json::to_string(self).unwrap_or_default();
         json.replace('<', "\\u003c")
     }
 }
 
-/// Every shape once, and which of them each body has.
-fn shapes(world: &World) -> (Vec<ShapeHead>, Vec<usize>) {
-    let mut heads = Vec::new();
-    let mut known: HashMap<*const Shape, usize> = HashMap::new();
-    let shape_of = world.bodies().map(|body| {
+/// The distinct shapes, and the index of the shape of each body.
+fn shape_headers(world: &World) -> (Vec<ShapeHeader>, Vec<usize>) {
+    let mut headers = Vec::new();
+    let mut index_of: HashMap<*const Shape, usize> = HashMap::new();
+    let shape_of_body = world.bodies().map(|body| {
         let shape = &body.model().shape;
-        *known.entry(Arc::as_ptr(shape)).or_insert_with(|| {
-            heads.push(of_shape(body.model()));
-            heads.len() - 1
+        *index_of.entry(Arc::as_ptr(shape)).or_insert_with(|| {
+            headers.push(shape_header(body.model()));
+            headers.len() - 1
         })
     });
-    let shape_of = shape_of.collect();
-    (heads, shape_of)
+    let shape_of_body = shape_of_body.collect();
+    (headers, shape_of_body)
 }
 
-fn of_shape(body: &BodyModel) -> ShapeHead {
+fn shape_header(body: &BodyModel) -> ShapeHeader {
     let (shape, surface) = (&body.shape, surface_of(body));
     let particle_radius = particle_radius(body);
     let particles: Vec<DVec3> = shape.particles().iter().collect();
-    let bare = surface.vertices.is_empty();
-    let vertices = if bare { &particles } else { &surface.vertices };
-    let same = bare || *vertices == particles;
+    let has_no_surface = surface.vertices.is_empty();
+    let vertices = if has_no_surface { &particles } else { &surface.vertices };
+    let are_shared = has_no_surface || *vertices == particles;
     let triangles = surface.triangles.iter().flatten().flat_map(|index| index.to_le_bytes());
-    ShapeHead {
-        vertices: points(vertices),
+    ShapeHeader {
+        vertices: encode_points(vertices),
         triangles: STANDARD.encode(triangles.collect::<Vec<u8>>()),
-        particles: (!same).then(|| points(&particles)),
+        particles: (!are_shared).then(|| encode_points(&particles)),
         particle_count: particles.len(),
         particle_radius,
         radius: shape.radius() + particle_radius.unwrap_or(0.0),
         first: shape.moments().first.to_array(),
-        // symmetric: columns are rows
+        // the matrix is symmetric, so its columns are its rows
         second: shape.moments().second.to_cols_array(),
     }
 }
 
-fn points(points: &[DVec3]) -> String {
+/// Coordinates as little-endian `f32` in base64.
+fn encode_points(points: &[DVec3]) -> String {
     let numbers = points.iter().flat_map(|p| p.to_array());
     STANDARD.encode(numbers.flat_map(|number| (number as f32).to_le_bytes()).collect::<Vec<u8>>())
 }
 
-fn of_body(body: &BodyView, shape: usize) -> BodyHead {
+fn body_header(body: &BodyView, shape: usize) -> BodyHeader {
     let model = body.model();
     let principal = model.shape.principal();
-    BodyHead {
+    BodyHeader {
         name: body.name().to_owned(),
         shape,
         mass: model.mass,
@@ -203,14 +210,14 @@ fn of_body(body: &BodyView, shape: usize) -> BodyHead {
     }
 }
 
-/// With the stiffness and friction that the first body meets.
-fn walls(world: &World) -> Vec<WallHead> {
+/// The walls, with the stiffness and friction of their contacts with the first body.
+fn wall_headers(world: &World) -> Vec<WallHeader> {
     let first = world.model().bodies.first();
     let walls = world.model().walls.iter().enumerate();
     walls
         .map(|(index, wall)| {
             let law = first.and_then(|body| body.contacts.get(index));
-            WallHead {
+            WallHeader {
                 normal: wall.normal.to_array(),
                 offset: wall.offset,
                 stiffness: law.map_or(0.0, |law| law.stiffness),
@@ -220,9 +227,9 @@ fn walls(world: &World) -> Vec<WallHead> {
         .collect()
 }
 
-fn of_box(walls: &WallBox) -> BoxHead {
+fn box_header(walls: &WallBox) -> BoxHeader {
     let open = WallBox::FACES.into_iter().zip(walls.open);
-    BoxHead {
+    BoxHeader {
         min: walls.min.to_array(),
         max: walls.max.to_array(),
         orientation: wxyz(walls.orientation),
@@ -230,6 +237,7 @@ fn of_box(walls: &WallBox) -> BoxHead {
     }
 }
 
+/// A quaternion in the order of the page: w, x, y, z.
 fn wxyz(q: DQuat) -> [f64; 4] {
     [q.w, q.x, q.y, q.z]
 }
@@ -240,9 +248,9 @@ mod tests {
     use tumble::DMat3;
 
     #[test]
-    fn axes_are_a_rotation() {
-        let turned = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
-        let q = DQuat::from_mat3(&turned);
+    fn a_quaternion_of_axes_rotates_x_to_the_first_axis() {
+        let axes = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
+        let q = DQuat::from_mat3(&axes);
         assert!(((q * DVec3::X) - DVec3::Y).length() < 1e-12);
         assert_eq!(wxyz(DQuat::IDENTITY), [1.0, 0.0, 0.0, 0.0]);
     }
