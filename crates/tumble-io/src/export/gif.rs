@@ -7,7 +7,7 @@ use ::gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use super::palette::{COLOURS, Palette};
 use super::png::drawn;
 use super::{ExportError, Exported, Job, Watch, tell};
-use crate::picture::Studio;
+use crate::picture::Renderer;
 
 /// The number of the colour that leaves a pixel as it was.
 const AS_BEFORE: u8 = COLOURS as u8;
@@ -33,7 +33,7 @@ pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportErro
         let mut before = Vec::new();
         for (done, &(index, delay)) in beats.iter().enumerate() {
             tell(watch, done, beats.len())?;
-            let now = palette.numbers(&studio.film_frame(index).pixels);
+            let now = palette.numbers(&studio.render_animation_frame(index).pixels);
             encoder.write_frame(&frame(&before, &now, (w, h), delay)).map_err(failed)?;
             before = now;
         }
@@ -59,7 +59,7 @@ fn beats(indices: &[usize], rate: f64) -> Vec<(usize, u16)> {
 }
 
 fn palette(
-    studio: &Studio,
+    studio: &Renderer,
     beats: &[(usize, u16)],
     watch: &mut Watch,
 ) -> Result<Palette, ExportError> {
@@ -67,7 +67,7 @@ fn palette(
     for lesson in 0..LESSONS.min(beats.len()) {
         tell(watch, 0, beats.len())?;
         let (index, _) = beats[lesson * (beats.len() - 1) / (LESSONS - 1).max(1)];
-        lessons.push(studio.film_frame(index).pixels);
+        lessons.push(studio.render_animation_frame(index).pixels);
     }
     Ok(Palette::learn(lessons.iter().map(Vec::as_slice)))
 }

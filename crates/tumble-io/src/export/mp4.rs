@@ -21,7 +21,7 @@ pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportErro
     drawn(job, size, |studio| {
         for (done, &index) in indices.iter().enumerate() {
             tell(watch, done, indices.len())?;
-            if let Err(error) = film.show(&studio.film_frame(index).pixels) {
+            if let Err(error) = film.show(&studio.render_animation_frame(index).pixels) {
                 // Ctrl-C reaches ffmpeg, too
                 tell(watch, done, indices.len())?;
                 return Err(film.complaint(&error.to_string()));

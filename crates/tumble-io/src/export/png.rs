@@ -3,7 +3,7 @@
 use std::io::Write;
 
 use super::{ExportError, Exported, Job, Watch, tell};
-use crate::picture::{Frame, Pose, Studio, encode_png};
+use crate::picture::{Frame, Pose, Renderer, encode_png};
 use crate::run::in_studio;
 
 pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportError> {
@@ -11,8 +11,8 @@ pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportErro
     let moment = options.at.map(|time| job.chosen.moment(time)).transpose()?;
     let size = options.picture_size(job.export.format);
     let image = drawn(job, size, |studio| match moment {
-        Some(frame) => studio.frame(frame),
-        None => studio.motion(),
+        Some(frame) => studio.render_frame(frame),
+        None => studio.render_motion(),
     });
     tell(watch, 1, 1)?;
     let bytes = encode_png(&image).map_err(|error| ExportError::Draw(error.to_string()))?;
@@ -22,7 +22,7 @@ pub(super) fn write(job: &Job, watch: &mut Watch) -> Result<Exported, ExportErro
 }
 
 /// Draws with a studio that knows all frames of the span of time, under the indices they have in it.
-pub(super) fn drawn<T>(job: &Job, size: (u32, u32), draw: impl FnOnce(&Studio) -> T) -> T {
+pub(super) fn drawn<T>(job: &Job, size: (u32, u32), draw: impl FnOnce(&Renderer) -> T) -> T {
     let pose = |pose: &crate::replay::Pose| Pose {
         position: pose.position,
         orientation: pose.orientation,

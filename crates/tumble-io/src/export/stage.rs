@@ -7,7 +7,7 @@ use tumble::{BodyModel, DQuat, DVec3};
 
 use super::{ExportError, Job};
 use crate::appearance::{KINEMATIC_COLOUR, is_kinematic, surface_of};
-use crate::picture::{Boundary, colour, corner_normals};
+use crate::picture::{Boundary, body_colour, corner_normals};
 use crate::replay::{Replay, ReplayFrame};
 use crate::run::boundary;
 
@@ -89,7 +89,7 @@ impl Form {
 /// The colour of a body as light, not as it is stored in pictures: red, green, blue and opacity from 0 to 1.
 fn linear_colour((index, body): (usize, &Arc<BodyModel>)) -> [f32; 4] {
     let is_kinematic = is_kinematic(body);
-    let stored = if is_kinematic { KINEMATIC_COLOUR } else { colour(index) };
+    let stored = if is_kinematic { KINEMATIC_COLOUR } else { body_colour(index) };
     let [r, g, b] = stored.map(|byte| {
         let stored = byte / 255.0;
         if stored <= 0.04045 { stored / 12.92 } else { libm::powf((stored + 0.055) / 1.055, 2.4) }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use tumble::{DVec3, Mesh, World};
 
 use crate::appearance::{is_kinematic, surface_of};
-use crate::picture::{self, Boundary, MotionPicture, PictureBody, Studio, View, encode_png};
+use crate::picture::{self, Boundary, PictureBody, PictureInput, Renderer, View, encode_png};
 use crate::scene::Scene;
 
 /// The motion in one picture, as PNG.
@@ -15,7 +15,7 @@ pub(super) fn motion_picture(
     frames: &[picture::Frame],
 ) -> Result<Vec<u8>, picture::PictureError> {
     let view = (picture::DEFAULT_SIZE, None);
-    in_studio((scene, world), frames, view, |studio| encode_png(&studio.motion()))
+    in_studio((scene, world), frames, view, |studio| encode_png(&studio.render_motion()))
 }
 
 /// The walls of a scene.
@@ -38,7 +38,7 @@ pub(crate) fn in_studio<T>(
     (scene, world): (&Scene, &World),
     frames: &[picture::Frame],
     (size, view): ((u32, u32), Option<View>),
-    draw: impl FnOnce(&Studio) -> T,
+    draw: impl FnOnce(&Renderer) -> T,
 ) -> T {
     // bodies without a surface are drawn by their particles
     let looks: Vec<(Cow<Mesh>, Vec<DVec3>)> = world
@@ -60,7 +60,7 @@ pub(crate) fn in_studio<T>(
             PictureBody { name: body.name(), vertices, triangles: &surface.triangles, is_kinematic }
         })
         .collect();
-    let picture = MotionPicture {
+    let picture = PictureInput {
         title: &scene.name,
         up: -scene.gravity,
         bodies: &bodies,
@@ -68,5 +68,5 @@ pub(crate) fn in_studio<T>(
         frames,
         size,
     };
-    draw(&Studio::seen_from(&picture, view))
+    draw(&Renderer::with_view(&picture, view))
 }
