@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Instant;
 use tumble::{DQuat, DVec3};
 use tumble_io::picture::{
-    Boundary, DEFAULT_SIZE, Frame, MotionPicture, PictureBody, Pose, encode_png, render,
+    Boundary, DEFAULT_SIZE, Frame, PictureBody, PictureInput, Pose, encode_png, render,
 };
 
 type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
@@ -132,7 +132,7 @@ fn draw(folder: &Path, sample: &Sample, size: (u32, u32)) -> Result<(), Box<dyn 
             is_kinematic: false,
         })
         .collect();
-    let picture = MotionPicture {
+    let picture = PictureInput {
         title: sample.title,
         up: sample.up,
         bodies: &bodies,

@@ -8,7 +8,7 @@ use tumble::{BodyModel, DQuat, DVec3};
 use super::error::ExportError;
 use super::job::Job;
 use crate::appearance::{KINEMATIC_COLOUR, is_kinematic, surface_of};
-use crate::picture::{Boundary, colour, corner_normals};
+use crate::picture::{Boundary, body_colour, corner_normals};
 use crate::replay::{Replay, ReplayFrame};
 use crate::run::boundaries;
 
@@ -100,7 +100,7 @@ impl ShapeGeometry {
 /// Linear RGB colour and opacity of a body, from 0 to 1, converted from sRGB (IEC 61966-2-1).
 fn linear_colour((index, body): (usize, &Arc<BodyModel>)) -> [f32; 4] {
     let is_kinematic = is_kinematic(body);
-    let srgb = if is_kinematic { KINEMATIC_COLOUR } else { colour(index) };
+    let srgb = if is_kinematic { KINEMATIC_COLOUR } else { body_colour(index) };
     let [r, g, b] = srgb.map(|byte| {
         let stored = byte / 255.0;
         if stored <= 0.04045 { stored / 12.92 } else { libm::powf((stored + 0.055) / 1.055, 2.4) }

@@ -8,7 +8,7 @@ use super::error::ExportError;
 use super::images::with_renderer;
 use super::job::{Exported, Job, Progress, report};
 use super::palette::{COLOUR_COUNT, Palette};
-use crate::picture::Studio;
+use crate::picture::Renderer;
 
 /// Colour index of a pixel that does not change.
 const TRANSPARENT: u8 = COLOUR_COUNT as u8;
@@ -34,7 +34,7 @@ pub(super) fn write(job: &Job, progress: &mut Progress) -> Result<Exported, Expo
         let mut previous = Vec::new();
         for (done, &(index, delay)) in schedule.iter().enumerate() {
             report(progress, done, schedule.len())?;
-            let pixels = palette.indices(&renderer.film_frame(index).pixels);
+            let pixels = palette.indices(&renderer.render_animation_frame(index).pixels);
             let frame = frame(&previous, &pixels, (w, h), delay);
             encoder.write_frame(&frame).map_err(encoding_error)?;
             previous = pixels;
@@ -64,7 +64,7 @@ fn schedule(indices: &[usize], rate: f64) -> Vec<(usize, u16)> {
 
 /// The palette of some frames, evenly distributed over the animation.
 fn palette(
-    renderer: &Studio,
+    renderer: &Renderer,
     schedule: &[(usize, u16)],
     progress: &mut Progress,
 ) -> Result<Palette, ExportError> {
@@ -72,7 +72,7 @@ fn palette(
     for sample in 0..PALETTE_FRAMES.min(schedule.len()) {
         report(progress, 0, schedule.len())?;
         let (index, _) = schedule[sample * (schedule.len() - 1) / (PALETTE_FRAMES - 1).max(1)];
-        samples.push(renderer.film_frame(index).pixels);
+        samples.push(renderer.render_animation_frame(index).pixels);
     }
     Ok(Palette::from_frames(samples.iter().map(Vec::as_slice)))
 }

@@ -22,7 +22,8 @@ pub(super) fn write(job: &Job, progress: &mut Progress) -> Result<Exported, Expo
     with_renderer(job, size, |renderer| {
         for (done, &index) in indices.iter().enumerate() {
             report(progress, done, indices.len())?;
-            if let Err(error) = encoder.write_frame(&renderer.film_frame(index).pixels) {
+            if let Err(error) = encoder.write_frame(&renderer.render_animation_frame(index).pixels)
+            {
                 // Ctrl-C also ends ffmpeg: report that the export was stopped, not a broken pipe
                 report(progress, done, indices.len())?;
                 return Err(encoder.failure(&error.to_string()));

@@ -11,8 +11,8 @@ pub(super) fn write(job: &Job, progress: &mut Progress) -> Result<Exported, Expo
     let frame = job.options.at.map(|time| job.selection.frame_at(time)).transpose()?;
     let size = job.options.image_size(job.format);
     let image = with_renderer(job, size, |renderer| match frame {
-        Some(frame) => renderer.frame(frame),
-        None => renderer.motion(),
+        Some(frame) => renderer.render_frame(frame),
+        None => renderer.render_motion(),
     });
     report(progress, 1, 1)?;
     let bytes = encode_png(&image).map_err(|error| ExportError::Draw(error.to_string()))?;

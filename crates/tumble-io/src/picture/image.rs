@@ -1,23 +1,23 @@
-//! Pixels, and their way into a PNG file.
+//! Pixel images and PNG output.
 
-/// An RGB picture, 8 bits a channel, rows from the top.
+/// An RGB image with 8 bits per channel, rows from top to bottom.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// Red, green, blue of each pixel: 3 · `width` · `height` bytes.
+    /// Red, green and blue of each pixel: 3 · `width` · `height` bytes.
     pub pixels: Vec<u8>,
 }
 
-/// Why a picture could not be written.
+/// Error from encoding a picture as PNG.
 #[derive(Debug)]
 pub struct PictureError(png::EncodingError);
 
 impl std::fmt::Display for PictureError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "the picture cannot be written as PNG: {}", self.0)
+        write!(f, "cannot encode the picture as PNG: {}", self.0)
     }
 }
 
@@ -27,10 +27,10 @@ impl std::error::Error for PictureError {
     }
 }
 
-/// The bytes of a PNG file.
+/// Encodes an image as a PNG file.
 ///
 /// # Errors
-/// [`PictureError`] when `pixels` does not fit the width and height.
+/// [`PictureError`] if the length of `pixels` does not match the width and height.
 pub fn encode_png(image: &Image) -> Result<Vec<u8>, PictureError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, image.width, image.height);
@@ -44,7 +44,7 @@ pub fn encode_png(image: &Image) -> Result<Vec<u8>, PictureError> {
 }
 
 impl Image {
-    /// The colour of a pixel, if there is such a pixel.
+    /// The colour of a pixel, or `None` outside the image.
     #[must_use]
     pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 3]> {
         if x >= self.width || y >= self.height {
@@ -54,7 +54,7 @@ impl Image {
         self.pixels.get(at..at + 3).and_then(|rgb| rgb.try_into().ok())
     }
 
-    /// Lays a colour over a pixel; outside of the picture nothing happens.
+    /// Blends a colour over a pixel. Does nothing outside the image.
     pub(super) fn blend(&mut self, x: i32, y: i32, colour: [u8; 3], alpha: f32) {
         if x < 0 || y < 0 || x >= self.width as i32 || y >= self.height as i32 {
             return;
@@ -66,8 +66,14 @@ impl Image {
         }
     }
 
-    /// A rectangle with slightly rounded corners.
-    pub(super) fn fill(&mut self, left: i32, top: i32, size: (i32, i32), colour: [u8; 3]) {
+    /// Fills a rectangle with slightly rounded corners.
+    pub(super) fn fill_rectangle(
+        &mut self,
+        left: i32,
+        top: i32,
+        size: (i32, i32),
+        colour: [u8; 3],
+    ) {
         for y in 0..size.1 {
             for x in 0..size.0 {
                 let corner = (x == 0 || x == size.0 - 1) && (y == 0 || y == size.1 - 1);
@@ -76,8 +82,8 @@ impl Image {
         }
     }
 
-    /// A line with soft edges, for signs that lie on top of the picture.
-    pub(super) fn line(&mut self, a: (f32, f32), b: (f32, f32), width: f32, colour: [u8; 3]) {
+    /// Draws an antialiased line over the image.
+    pub(super) fn draw_line(&mut self, a: (f32, f32), b: (f32, f32), width: f32, colour: [u8; 3]) {
         let (x0, x1) = (a.0.min(b.0) - width - 1.0, a.0.max(b.0) + width + 1.0);
         let (y0, y1) = (a.1.min(b.1) - width - 1.0, a.1.max(b.1) + width + 1.0);
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);

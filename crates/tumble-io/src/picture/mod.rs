@@ -1,22 +1,26 @@
-//! The motion of a run in one picture, drawn without a display, a graphics card or system fonts.
+//! Pictures of a run, rendered in software: no display, graphics card or system fonts needed.
 //!
-//! [`render`] shows the bodies at several times, the earlier the paler, with the paths of their
-//! centres of mass, the walls, shadows on the floor and a legend. A [`Studio`] holds what all
-//! pictures of one run share, so that single frames (an animation) come out in the same view.
+//! [`render`] shows the bodies at several times, earlier ones paler, with the paths of their
+//! centres of mass, the walls, shadows on the floor and a legend. A [`Renderer`] holds what all
+//! pictures of one run share, so that every frame of an animation has the same view.
 //!
-//! | file | does |
+//! | file | contents |
 //! |---|---|
-//! | `camera` | where the viewer stands; points of the world to pixels |
-//! | `raster` | triangles, discs and lines into layers with a depth buffer |
-//! | `figure` | a body prepared for drawing: welded, thinned out, with normals |
-//! | `surface`, `shadow` | walls and floors, and what falls on them |
-//! | `moments` | which times to show |
-//! | `compose` | the order of it all, and the sum over sub-pixels |
-//! | `legend`, `text`, `image` | words and pixels |
+//! | `input` | the bodies, walls and frames that a picture shows |
+//! | `camera` | perspective projection from world coordinates to pixels |
+//! | `framing` | choice of the view |
+//! | `layer` | rasterisation of triangles, spheres and lines with a depth buffer |
+//! | `normals`, `body_mesh` | meshes of bodies: welding, decimation, normals |
+//! | `colour`, `shading` | colours of bodies and lighting |
+//! | `rectangle`, `surface`, `shadow` | floors, walls and the shadows on them |
+//! | `snapshots` | choice of the times to show |
+//! | `text`, `legend` | labels |
+//! | `renderer` | drawing order, compositing and antialiasing |
+//! | `image` | pixels and PNG output |
 //!
 //! ```
 //! use tumble::{DQuat, DVec3};
-//! use tumble_io::picture::{Boundary, Frame, MotionPicture, PictureBody, Pose, encode_png, render};
+//! use tumble_io::picture::{Boundary, Frame, PictureBody, PictureInput, Pose, encode_png, render};
 //!
 //! let bodies = [PictureBody {
 //!     name: "point", vertices: &[DVec3::ZERO], triangles: &[], is_kinematic: false,
@@ -29,7 +33,7 @@
 //!         Frame { time, poses: vec![Pose { position, orientation: DQuat::IDENTITY }] }
 //!     })
 //!     .collect();
-//! let picture = MotionPicture {
+//! let input = PictureInput {
 //!     title: "throw",
 //!     up: DVec3::Y,
 //!     bodies: &bodies,
@@ -37,141 +41,32 @@
 //!     frames: &frames,
 //!     size: (320, 200),
 //! };
-//! let png = encode_png(&render(&picture))?;
+//! let png = encode_png(&render(&input))?;
 //! assert_eq!(&png[1..4], b"PNG");
 //! # Ok::<(), tumble_io::picture::PictureError>(())
 //! ```
 
+mod body_mesh;
 mod camera;
-mod compose;
-mod figure;
+mod colour;
+mod framing;
 mod image;
+mod input;
+mod layer;
 mod legend;
-mod moments;
-mod raster;
+mod normals;
+mod rectangle;
+mod renderer;
+mod shading;
 mod shadow;
+mod snapshots;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod text;
 
-pub use compose::Studio;
-pub(crate) use compose::colour;
-pub(crate) use figure::corner_normals;
-use glam::{DQuat, DVec3};
+pub(crate) use colour::body_colour;
 pub use image::{Image, PictureError, encode_png};
-
-/// The usual size of a picture, in pixels: width, height.
-pub const DEFAULT_SIZE: (u32, u32) = (1600, 1000);
-
-/// All that a picture of a run needs.
-#[derive(Clone, Copy, Debug)]
-pub struct MotionPicture<'a> {
-    /// Written at the top; empty for none.
-    pub title: &'a str,
-    /// The direction that points up in the picture: against gravity. Any length; zero means +y.
-    pub up: DVec3,
-    /// The bodies, in the order of [`Frame::poses`].
-    pub bodies: &'a [PictureBody<'a>],
-    /// Boxes and planes; empty for free space.
-    pub boundary: &'a [Boundary],
-    /// The recorded motion, first frame first.
-    pub frames: &'a [Frame],
-    /// Width and height in pixels; a side is held between 1 and 16384.
-    pub size: (u32, u32),
-}
-
-/// Where a picture is seen from.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
-    /// Turns the viewer around the direction that points up (rad). At 0 the view goes along −z
-    /// where +y is up, and along +y where +z is up.
-    pub yaw: f64,
-    /// How far the viewer looks down (rad).
-    pub pitch: f64,
-    /// 1 shows the walls and the whole motion, 2 enlarges the middle to twice that.
-    pub zoom: f64,
-}
-
-/// What a body looks like.
-#[derive(Clone, Copy, Debug)]
-pub struct PictureBody<'a> {
-    /// The name for the legend.
-    pub name: &'a str,
-    /// Vertices (m) in the body's frame, with the centre of mass at the origin.
-    pub vertices: &'a [DVec3],
-    /// Triangles as indices into `vertices`; empty: each vertex is drawn as a small ball.
-    pub triangles: &'a [[u32; 3]],
-    /// Whether something other than forces moves it: it is grey, and one looks through it.
-    pub is_kinematic: bool,
-}
-
-/// What bounds the motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Boundary {
-    /// A box that holds the bodies inside.
-    Box {
-        /// The corner with the smallest coordinates (m), in the frame of the box.
-        min: DVec3,
-        /// The corner with the largest coordinates (m), in the frame of the box.
-        max: DVec3,
-        /// Turns the frame of the box into the world's, about the world's origin.
-        orientation: DQuat,
-        /// Faces that are missing: −x, +x, −y, +y, −z, +z.
-        open: [bool; 6],
-    },
-    /// An infinite wall, solid where `normal`·x < `offset`.
-    Plane {
-        /// Points out of the solid. Any length but zero.
-        normal: DVec3,
-        /// Height of the wall along `normal` (m, when `normal` has length one).
-        offset: f64,
-    },
-}
-
-/// The bodies at one time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
-    /// Time (s).
-    pub time: f64,
-    /// One pose a body; a pose that is not finite is left out of the picture.
-    pub poses: Vec<Pose>,
-}
-
-/// Where a body is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// The centre of mass (m).
-    pub position: DVec3,
-    /// Turns the body's frame into the world's.
-    pub orientation: DQuat,
-}
-
-/// Coordinates beyond this (m) count as not finite: their squares and cubes must stay finite.
-const REACH: f64 = 1e90;
-
-/// Whether a point can be drawn at all.
-fn drawable(point: DVec3) -> bool {
-    point.abs().max_element() < REACH && !point.is_nan()
-}
-
-/// The rotation with length one, or none if there is no telling which.
-fn rotation(orientation: DQuat) -> Option<DQuat> {
-    let length = orientation.length();
-    (length.is_finite() && length > 1e-9).then(|| (orientation * (1.0 / length)).normalize())
-}
-
-impl Frame {
-    /// The pose of a body in this frame, if there is one that can be drawn.
-    fn pose(&self, body: usize) -> Option<Pose> {
-        let pose = self.poses.get(body)?;
-        let orientation = rotation(pose.orientation)?;
-        drawable(pose.position).then_some(Pose { position: pose.position, orientation })
-    }
-}
-
-/// Draws the whole motion in one picture.
-#[must_use]
-pub fn render(picture: &MotionPicture) -> Image {
-    Studio::new(picture).motion()
-}
+pub use input::{Boundary, DEFAULT_SIZE, Frame, PictureBody, PictureInput, Pose, View};
+pub(crate) use normals::corner_normals;
+pub use renderer::{Renderer, render};

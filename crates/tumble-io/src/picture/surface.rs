@@ -1,132 +1,126 @@
-//! Floors and walls: flat, see-through rectangles with a grid and shadows, and the edges of boxes.
+//! Floors and walls, drawn as translucent rectangles with grid lines and shadows, and the edges of boxes.
 
 use super::camera::Camera;
-use super::raster::Layer;
+use super::input::{Boundary, is_drawable, unit_quaternion};
+use super::layer::Layer;
+use super::rectangle::Rectangle;
 use super::shadow::ShadowMap;
-use super::text::round_number;
-use super::{Boundary, drawable, rotation};
+use super::text::nice_number;
 use glam::{DQuat, DVec3};
 
-/// A flat rectangle, seen from the side on which the bodies are.
+/// A floor or wall, drawn only from the side of the bodies.
 #[derive(Clone, Debug)]
 pub(super) struct Surface {
-    /// The middle (m).
-    pub origin: DVec3,
-    pub u: DVec3,
-    pub v: DVec3,
-    /// Points to where the bodies are.
-    pub normal: DVec3,
-    /// Half of the sides along `u` and `v` (m).
-    pub half: [f64; 2],
-    /// Distance of the lines (m); 0 for none.
+    pub rectangle: Rectangle,
+    /// Spacing of the grid lines (m); 0 for no grid.
     pub grid: f64,
-    /// Ends in a soft edge, because the wall goes on for ever.
-    fading: bool,
-    only_lines: bool,
+    /// Whether the surface fades out towards its rim, because it stands for an infinite plane.
+    has_soft_rim: bool,
+    /// Whether only the grid lines are drawn.
+    is_grid_only: bool,
     fill: [f32; 3],
     line: [f32; 3],
     alpha: f32,
     pub shadow: Option<ShadowMap>,
 }
 
-/// An edge of a box, and whether it lies between the viewer and the bodies.
+/// An edge of a box.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
+    /// End points (m).
     pub ends: [DVec3; 2],
-    pub front: bool,
+    /// Whether the edge lies between the viewer and the bodies.
+    pub is_front: bool,
 }
 
 const FLOOR: [f32; 3] = [229.0, 233.0, 239.0];
 const FLOOR_LINE: [f32; 3] = [204.0, 210.0, 219.0];
 const WALL: [f32; 3] = [238.0, 240.0, 244.0];
-/// A surface at least this level catches shadows.
-const LEVEL: f64 = 0.35;
+/// A surface is a floor, and receives shadows, if the cosine of its tilt is above this.
+const MIN_FLOOR_COSINE: f64 = 0.35;
 
 impl Surface {
-    fn new(origin: DVec3, axes: [DVec3; 3], half: [f64; 2], is_floor: bool) -> Self {
-        let [u, v, normal] = axes;
+    fn new(rectangle: Rectangle, is_floor: bool) -> Self {
         Self {
-            origin,
-            u,
-            v,
-            normal,
-            half,
+            rectangle,
             grid: 0.0,
-            fading: false,
-            only_lines: false,
+            has_soft_rim: false,
+            is_grid_only: false,
             fill: if is_floor { FLOOR } else { WALL },
             line: FLOOR_LINE,
             alpha: if is_floor { 0.92 } else { 0.75 },
-            shadow: is_floor.then(|| ShadowMap::new(half)),
+            shadow: is_floor.then(|| ShadowMap::new(rectangle.half)),
         }
     }
 
-    /// The colour at a place on the surface; `pixel` is the length of a pixel there (m).
-    fn colour(&self, x: f64, y: f64, pixel: f64, foot: DVec3) -> [u8; 4] {
-        let (px, py) = (x / self.half[0], y / self.half[1]);
+    /// The colour at a point of the surface. `(x, y)` are its coordinates along
+    /// `u` and `v` (m), `point` its world position (m), and `pixel` the size of a pixel there (m).
+    fn colour(&self, (x, y): (f64, f64), pixel: f64, point: DVec3) -> [u8; 4] {
+        let Rectangle { u, v, half, .. } = self.rectangle;
+        let (px, py) = (x / half[0], y / half[1]);
         if px.abs() > 1.0 || py.abs() > 1.0 {
             return [0; 4];
         }
         let mut alpha = self.alpha;
-        if self.fading {
+        if self.has_soft_rim {
             let rim = (1.0 - (px * px + py * py).sqrt()).clamp(0.0, 0.6) as f32 / 0.6;
             alpha *= rim * rim * (3.0 - 2.0 * rim);
         }
         let mut colour = self.fill;
         let near_line = |along: f64| {
-            // the part of a cell, by a cast: rounding is slow on the plainest processors
+            // the cast truncates; `floor` is slow on processors without SSE4.1
             let cells = (along / self.grid).abs();
             let part = cells - cells as i64 as f64;
             part.min(1.0 - part) * self.grid < 0.7 * pixel
         };
-        if self.grid > 0.0 && (near_line(foot.dot(self.u)) || near_line(foot.dot(self.v))) {
+        if self.grid > 0.0 && (near_line(point.dot(u)) || near_line(point.dot(v))) {
             colour = self.line;
-        } else if self.only_lines {
+        } else if self.is_grid_only {
             return [0; 4];
         }
-        let dark = self.shadow.as_ref().map_or(0.0, |s| s.at(x + self.half[0], y + self.half[1]));
-        let keep = 1.0 - dark.min(0.75);
-        let [r, g, b] = colour.map(|c| c * keep);
-        // a shadow is a little blue, as under an open sky
+        let dark = self.shadow.as_ref().map_or(0.0, |s| s.darkness(x + half[0], y + half[1]));
+        let brightness = 1.0 - dark.min(0.75);
+        let [r, g, b] = colour.map(|c| c * brightness);
+        // shadows are slightly blue, as outdoors
         [r as u8, g as u8, (b + 14.0 * dark).min(255.0) as u8, (255.0 * alpha) as u8]
     }
 
-    /// Draws the surface as far as it is seen.
+    /// Draws the surface by casting a ray through each pixel.
     pub fn draw(&self, camera: &Camera, layer: &mut Layer) {
-        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| {
-            camera.project(self.origin + self.u * (a * self.half[0]) + self.v * (b * self.half[1]))
-        });
+        let Rectangle { centre, u, v, normal, half } = self.rectangle;
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(a, b)| camera.project(centre + u * (a * half[0]) + v * (b * half[1])));
         let (mut low, mut high) = ((layer.left, layer.top), (layer.left, layer.top));
         high = (high.0 + layer.width, high.1 + layer.height);
         if let [Some(a), Some(b), Some(c), Some(d)] = corners {
             let x = [a.x, b.x, c.x, d.x].map(|x| x as i32);
             let y = [a.y, b.y, c.y, d.y].map(|y| y as i32);
-            let least = |v: [i32; 4]| v.into_iter().min().unwrap_or(0) - 1;
-            let most = |v: [i32; 4]| v.into_iter().max().unwrap_or(0) + 2;
-            low = (low.0.max(least(x)), low.1.max(least(y)));
-            high = (high.0.min(most(x)), high.1.min(most(y)));
+            let min = |v: [i32; 4]| v.into_iter().min().unwrap_or(0) - 1;
+            let max = |v: [i32; 4]| v.into_iter().max().unwrap_or(0) + 2;
+            low = (low.0.max(min(x)), low.1.max(min(y)));
+            high = (high.0.min(max(x)), high.1.min(max(y)));
         }
-        let pixel = camera.pixel_length() / (camera.eye() - camera.centre()).dot(camera.back);
+        let pixel = camera.pixel_size() / (camera.eye() - camera.centre()).dot(camera.back);
         for row in low.1..high.1 {
             for column in low.0..high.0 {
-                let (eye, sight) = camera.sight(f64::from(column) + 0.5, f64::from(row) + 0.5);
-                let depth = (self.origin - eye).dot(self.normal) / sight.dot(self.normal);
+                let (eye, ray) = camera.ray(f64::from(column) + 0.5, f64::from(row) + 0.5);
+                let depth = (centre - eye).dot(normal) / ray.dot(normal);
                 if depth > 1e-3 && depth < 1e6 {
-                    let foot = eye + sight * depth;
-                    let local = foot - self.origin;
-                    let (x, y) = (local.dot(self.u), local.dot(self.v));
-                    // the length of a pixel grows with the distance
+                    let point = eye + ray * depth;
+                    let local = point - centre;
+                    let at = (local.dot(u), local.dot(v));
+                    // pixels cover more length at greater depth
                     let pixel = pixel * depth * camera.scale();
-                    layer.put(column, row, (1.0 / depth) as f32, || self.colour(x, y, pixel, foot));
+                    layer
+                        .write(column, row, (1.0 / depth) as f32, || self.colour(at, pixel, point));
                 }
             }
         }
     }
 }
 
-/// What the boundaries look like: faces behind the bodies, in groups that cannot hide one another,
-/// and edges of boxes.
-pub(super) fn build(
+/// Surfaces behind the bodies, in groups whose members do not occlude each other, and the edges of boxes.
+pub(super) fn from_boundary(
     boundary: &[Boundary],
     camera: &Camera,
     up: DVec3,
@@ -135,9 +129,9 @@ pub(super) fn build(
     for part in boundary {
         match *part {
             Boundary::Box { min, max, orientation, open } => {
-                let Some(frame) = Cuboid::new(min, max, orientation) else { continue };
-                groups.push(frame.faces(open, camera, up));
-                edges.extend(frame.edges(open, camera));
+                let Some(cuboid) = Cuboid::new(min, max, orientation) else { continue };
+                groups.push(cuboid.faces(open, camera, up));
+                edges.extend(cuboid.edges(open, camera));
             }
             Boundary::Plane { normal, offset } => {
                 groups.extend(plane(normal, offset, camera, up).map(|surface| vec![surface]));
@@ -145,20 +139,20 @@ pub(super) fn build(
         }
     }
     if boundary.is_empty() {
-        groups.push(vec![free_space(camera, up)]);
+        groups.push(vec![reference_grid(camera, up)]);
     }
     (groups, edges)
 }
 
-/// The corners of a box (m) in the world, for framing it.
+/// The corners of a box in world coordinates (m). Empty for a plane.
 pub(super) fn corners(part: &Boundary) -> Vec<DVec3> {
     let Boundary::Box { min, max, orientation, .. } = *part else { return Vec::new() };
-    let Some(frame) = Cuboid::new(min, max, orientation) else { return Vec::new() };
+    let Some(cuboid) = Cuboid::new(min, max, orientation) else { return Vec::new() };
     let sign = |bit: usize| if bit == 0 { -1.0 } else { 1.0 };
-    (0..8).map(|i| frame.at([sign(i & 1), sign(i & 2), sign(i & 4)])).collect()
+    (0..8).map(|i| cuboid.point([sign(i & 1), sign(i & 2), sign(i & 4)])).collect()
 }
 
-/// A box by its middle, half sides and axes.
+/// An oriented box.
 struct Cuboid {
     centre: DVec3,
     half: DVec3,
@@ -167,21 +161,21 @@ struct Cuboid {
 
 impl Cuboid {
     fn new(min: DVec3, max: DVec3, orientation: DQuat) -> Option<Self> {
-        let turn = rotation(orientation)?;
-        (drawable(min) && drawable(max)).then(|| Self {
-            centre: turn * (0.5 * (min + max)),
+        let rotation = unit_quaternion(orientation)?;
+        (is_drawable(min) && is_drawable(max)).then(|| Self {
+            centre: rotation * (0.5 * (min + max)),
             half: (0.5 * (max - min)).abs(),
-            axes: [turn * DVec3::X, turn * DVec3::Y, turn * DVec3::Z],
+            axes: [rotation * DVec3::X, rotation * DVec3::Y, rotation * DVec3::Z],
         })
     }
 
-    /// A point by its coordinates from −1 to 1.
-    fn at(&self, part: [f64; 3]) -> DVec3 {
-        (0..3).fold(self.centre, |sum, a| sum + self.axes[a] * (part[a] * self.half[a]))
+    /// The world position (m) of a point given by coordinates from −1 to 1.
+    fn point(&self, coordinates: [f64; 3]) -> DVec3 {
+        (0..3).fold(self.centre, |sum, a| sum + self.axes[a] * (coordinates[a] * self.half[a]))
     }
 
-    /// Whether the viewer sees the inner side of a face.
-    fn seen_from_inside(&self, axis: usize, sign: f64, camera: &Camera) -> bool {
+    /// Whether the inner side of a face is visible.
+    fn is_inside_visible(&self, axis: usize, sign: f64, camera: &Camera) -> bool {
         let centre = self.centre + self.axes[axis] * (sign * self.half[axis]);
         (camera.eye() - centre).dot(self.axes[axis]) * sign < 0.0
     }
@@ -190,18 +184,18 @@ impl Cuboid {
         let mut faces = Vec::new();
         for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, 1)]) {
             let sign = if side == 0 { -1.0 } else { 1.0 };
-            if open[2 * axis + side] || !self.seen_from_inside(axis, sign, camera) {
+            if open[2 * axis + side] || !self.is_inside_visible(axis, sign, camera) {
                 continue;
             }
             let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
             let normal = self.axes[axis] * -sign;
             let centre = self.centre - normal * self.half[axis];
             let half = [self.half[u], self.half[v]];
-            let is_floor = normal.dot(up) > LEVEL;
-            let axes = [self.axes[u], self.axes[v], normal];
-            let mut face = Surface::new(centre, axes, half, is_floor);
+            let is_floor = normal.dot(up) > MIN_FLOOR_COSINE;
+            let (u, v) = (self.axes[u], self.axes[v]);
+            let mut face = Surface::new(Rectangle { centre, u, v, normal, half }, is_floor);
             if is_floor {
-                face.grid = round_number(half[0].max(half[1]) / 4.0);
+                face.grid = nice_number(half[0].max(half[1]) / 4.0);
             }
             faces.push(face);
         }
@@ -218,58 +212,60 @@ impl Cuboid {
             let sign = |side: usize| if side == 0 { -1.0 } else { 1.0 };
             let mut part = [0.0; 3];
             (part[axis], part[u], part[v]) = (-1.0, sign(i), sign(j));
-            let start = self.at(part);
+            let start = self.point(part);
             part[axis] = 1.0;
-            let front = !self.seen_from_inside(u, sign(i), camera)
-                && !self.seen_from_inside(v, sign(j), camera);
-            edges.push(Edge { ends: [start, self.at(part)], front });
+            let is_front = !self.is_inside_visible(u, sign(i), camera)
+                && !self.is_inside_visible(v, sign(j), camera);
+            edges.push(Edge { ends: [start, self.point(part)], is_front });
         }
         edges
     }
 }
 
-/// Level directions on a plane, along the axes of the world where that can be.
+/// Unit vectors that span a plane, aligned with the world axes where possible.
 fn plane_axes(normal: DVec3) -> (DVec3, DVec3) {
     let axis = if normal.x.abs() < 0.7 { DVec3::X } else { DVec3::Z };
     let u = (axis - normal * normal.dot(axis)).normalize();
     (u, normal.cross(u))
 }
 
-/// The part of an infinite wall that lies around the motion.
+/// The part of an infinite plane around the motion.
 fn plane(normal: DVec3, offset: f64, camera: &Camera, up: DVec3) -> Option<Surface> {
     let length = normal.length();
-    if !(drawable(normal) && length > 1e-90 && offset.is_finite()) {
+    if !(is_drawable(normal) && length > 1e-90 && offset.is_finite()) {
         return None;
     }
     let (normal, offset) = (normal / length, offset / length);
     let height = camera.centre().dot(normal) - offset;
-    let is_floor = normal.dot(up) > LEVEL;
-    // below the motion, or beside it
-    let way = if is_floor { up / normal.dot(up) } else { normal };
-    let origin = camera.centre() - way * height;
-    if !drawable(origin) {
+    let is_floor = normal.dot(up) > MIN_FLOOR_COSINE;
+    // project the centre of the scene along the vertical onto a floor, and along the normal onto a wall
+    let direction = if is_floor { up / normal.dot(up) } else { normal };
+    let centre = camera.centre() - direction * height;
+    if !is_drawable(centre) {
         return None;
     }
     let (u, v) = plane_axes(normal);
     let size = 2.6 * camera.scale();
-    let mut surface = Surface::new(origin, [u, v, normal], [size, size], is_floor);
-    surface.fading = true;
-    surface.grid = round_number(camera.scale() / 3.0);
-    // seen from within the solid, a wall must not hide the motion
-    if (camera.eye() - origin).dot(normal) < 0.0 {
+    let mut surface =
+        Surface::new(Rectangle { centre, u, v, normal, half: [size, size] }, is_floor);
+    surface.has_soft_rim = true;
+    surface.grid = nice_number(camera.scale() / 3.0);
+    // a wall between the viewer and the motion must not hide the motion
+    if (camera.eye() - centre).dot(normal) < 0.0 {
         surface.alpha = 0.25;
     }
     Some(surface)
 }
 
-/// Without walls, a faint grid below the motion tells directions and sizes.
-fn free_space(camera: &Camera, up: DVec3) -> Surface {
-    let origin = camera.centre() - up * (0.9 * camera.scale());
+/// A faint grid below the motion that shows scale and orientation in free space.
+fn reference_grid(camera: &Camera, up: DVec3) -> Surface {
+    let centre = camera.centre() - up * (0.9 * camera.scale());
     let (u, v) = plane_axes(up);
     let size = 2.0 * camera.scale();
-    let mut surface = Surface::new(origin, [u, v, up], [size, size], false);
-    surface.fading = true;
-    surface.grid = round_number(camera.scale() / 3.0);
-    surface.only_lines = true;
+    let mut surface =
+        Surface::new(Rectangle { centre, u, v, normal: up, half: [size, size] }, false);
+    surface.has_soft_rim = true;
+    surface.grid = nice_number(camera.scale() / 3.0);
+    surface.is_grid_only = true;
     surface
 }

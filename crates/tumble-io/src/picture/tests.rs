@@ -1,6 +1,9 @@
-//! Whether pictures show what they should, pixel by pixel.
+//! Tests of rendered pixels.
 
-use super::*;
+use super::{
+    Boundary, Frame, Image, PictureBody, PictureInput, Pose, Renderer, encode_png, render,
+};
+use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
 fn cube(half: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
@@ -16,7 +19,7 @@ fn pose(x: f64, y: f64, z: f64) -> Pose {
     Pose { position: DVec3::new(x, y, z), orientation: DQuat::IDENTITY }
 }
 
-fn room(half: f64) -> Boundary {
+fn closed_box(half: f64) -> Boundary {
     Boundary::Box {
         min: DVec3::splat(-half),
         max: DVec3::splat(half),
@@ -34,7 +37,7 @@ struct Case {
 }
 
 impl Case {
-    fn with<T>(&self, use_it: impl FnOnce(&MotionPicture) -> T) -> T {
+    fn with<T>(&self, test: impl FnOnce(&PictureInput) -> T) -> T {
         let bodies: Vec<PictureBody> = self
             .bodies
             .iter()
@@ -45,7 +48,7 @@ impl Case {
                 is_kinematic: false,
             })
             .collect();
-        use_it(&MotionPicture {
+        test(&PictureInput {
             title: self.title,
             up: DVec3::Y,
             bodies: &bodies,
@@ -60,14 +63,14 @@ fn one_cube(poses: &[Pose]) -> Case {
     let frame = |(i, pose): (usize, &Pose)| Frame { time: i as f64, poses: vec![*pose] };
     Case {
         bodies: vec![cube(0.2)],
-        boundary: vec![room(1.0)],
+        boundary: vec![closed_box(1.0)],
         frames: poses.iter().enumerate().map(frame).collect(),
         size: (400, 250),
         title: "",
     }
 }
 
-/// Blue stands out: the first body's hue, far from that of walls and paper.
+/// Whether a pixel has the blue hue of the first body, unlike walls and background.
 fn is_blue([r, _, b]: [u8; 3]) -> bool {
     i32::from(b) > i32::from(r) + 60
 }
@@ -76,36 +79,36 @@ fn is_orange([r, _, b]: [u8; 3]) -> bool {
     i32::from(r) > i32::from(b) + 60
 }
 
-fn at(studio: &Studio, image: &Image, point: DVec3) -> [u8; 3] {
-    let (x, y) = studio.pixel_of(point).unwrap();
+fn at(renderer: &Renderer, image: &Image, point: DVec3) -> [u8; 3] {
+    let (x, y) = renderer.project(point).unwrap();
     image.pixel(x as u32, y as u32).unwrap()
 }
 
 #[test]
-fn body_is_where_its_projection_says() {
+fn body_is_drawn_at_its_projected_position() {
     one_cube(&[pose(0.5, 0.1, -0.3)]).with(|picture| {
-        let studio = Studio::new(picture);
-        let image = studio.motion();
-        assert!(is_blue(at(&studio, &image, DVec3::new(0.5, 0.1, -0.3))));
-        assert!(!is_blue(at(&studio, &image, DVec3::new(-0.5, 0.1, 0.3))));
+        let renderer = Renderer::new(picture);
+        let image = renderer.render_motion();
+        assert!(is_blue(at(&renderer, &image, DVec3::new(0.5, 0.1, -0.3))));
+        assert!(!is_blue(at(&renderer, &image, DVec3::new(-0.5, 0.1, 0.3))));
     });
 }
 
 #[test]
-fn picture_is_not_blank_and_has_its_size() {
+fn picture_has_the_requested_size_and_shows_the_body() {
     let image = one_cube(&[pose(0.0, 0.0, 0.0), pose(0.5, 0.5, 0.5)]).with(render);
     assert_eq!((image.width, image.height, image.pixels.len()), (400, 250, 300_000));
     assert!(image.pixels.chunks(3).filter(|p| is_blue([p[0], p[1], p[2]])).count() > 500);
 }
 
 #[test]
-fn near_body_hides_the_far_one_whatever_their_order() {
+fn near_body_occludes_far_body_in_either_order() {
     for order in [[0.8, -0.8], [-0.8, 0.8]] {
         let mut case = one_cube(&[]);
         case.bodies.push(cube(0.2));
         case.with(|picture| {
-            // both on the line of sight through the middle
-            let toward = Studio::new(picture).toward_viewer();
+            // both bodies lie on the line of sight through the centre
+            let toward = Renderer::new(picture).direction_to_viewer();
             let frames = [Frame {
                 time: 0.0,
                 poses: order
@@ -113,10 +116,10 @@ fn near_body_hides_the_far_one_whatever_their_order() {
                     .map(|&d| Pose { position: toward * d, orientation: DQuat::IDENTITY })
                     .collect(),
             }];
-            let picture = MotionPicture { frames: &frames, ..*picture };
-            let studio = Studio::new(&picture);
-            let image = studio.motion();
-            let seen = at(&studio, &image, toward * 0.8);
+            let picture = PictureInput { frames: &frames, ..*picture };
+            let renderer = Renderer::new(&picture);
+            let image = renderer.render_motion();
+            let seen = at(&renderer, &image, toward * 0.8);
             assert_eq!(is_blue(seen), order[0] > 0.0, "{seen:?}");
             assert_eq!(is_orange(seen), order[1] > 0.0, "{seen:?}");
         });
@@ -124,31 +127,31 @@ fn near_body_hides_the_far_one_whatever_their_order() {
 }
 
 #[test]
-fn body_hides_the_edge_behind_it() {
+fn body_occludes_the_edge_behind_it() {
     let mut case = one_cube(&[pose(0.0, 0.0, 0.0)]);
     case.with(|picture| {
-        let studio = Studio::new(picture);
-        let image = studio.motion();
-        let corner = farthest_corner(&studio);
-        let [r, g, b] = at(&studio, &image, corner).map(i32::from);
-        assert!(r > g + 30 && r > b + 30, "the edge is seen: {r} {g} {b}");
+        let renderer = Renderer::new(picture);
+        let image = renderer.render_motion();
+        let corner = farthest_corner(&renderer);
+        let [r, g, b] = at(&renderer, &image, corner).map(i32::from);
+        assert!(r > g + 30 && r > b + 30, "the edge is visible: {r} {g} {b}");
     });
-    let corner = case.with(|picture| farthest_corner(&Studio::new(picture)));
+    let corner = case.with(|picture| farthest_corner(&Renderer::new(picture)));
     case.frames[0].poses[0].position = corner * 0.75;
     case.with(|picture| {
-        let studio = Studio::new(picture);
-        let image = studio.motion();
-        assert!(is_blue(at(&studio, &image, corner)), "the edge is hidden");
+        let renderer = Renderer::new(picture);
+        let image = renderer.render_motion();
+        assert!(is_blue(at(&renderer, &image, corner)), "the edge is hidden");
     });
 }
 
-fn farthest_corner(studio: &Studio) -> DVec3 {
-    let toward = studio.toward_viewer();
+fn farthest_corner(renderer: &Renderer) -> DVec3 {
+    let toward = renderer.direction_to_viewer();
     DVec3::new(-toward.x.signum(), -toward.y.signum(), -toward.z.signum())
 }
 
 #[test]
-fn png_reads_back_to_the_same_pixels() {
+fn png_round_trip_preserves_pixels() {
     let image = one_cube(&[pose(0.0, 0.0, 0.0)]).with(render);
     let bytes = encode_png(&image).unwrap();
     let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
@@ -159,23 +162,23 @@ fn png_reads_back_to_the_same_pixels() {
 }
 
 #[test]
-fn png_of_too_few_pixels_is_an_error() {
+fn encoding_too_few_pixels_is_an_error() {
     let image = Image { width: 4, height: 4, pixels: vec![0; 5] };
     assert!(encode_png(&image).is_err());
 }
 
 #[test]
-fn picture_is_the_same_every_time() {
+fn rendering_is_deterministic() {
     let case = one_cube(&[pose(-0.6, 0.0, 0.0), pose(0.0, 0.4, 0.0), pose(0.6, -0.7, 0.2)]);
     assert_eq!(case.with(render), case.with(render));
 }
 
 #[test]
-fn scale_and_place_do_not_change_the_picture() {
+fn scale_of_the_scene_does_not_change_the_picture() {
     let at = |x: f64, scale: f64| {
         let mut case = one_cube(&[pose(-0.5 * scale, 0.0, 0.0), pose(x * scale, 0.0, 0.0)]);
         case.bodies = vec![cube(0.2 * scale)];
-        case.boundary = vec![room(scale)];
+        case.boundary = vec![closed_box(scale)];
         case.with(render)
     };
     let usual = at(0.5, 1.0);
@@ -183,28 +186,28 @@ fn scale_and_place_do_not_change_the_picture() {
         let other = at(0.5, scale);
         let differ = |(a, b): &(&u8, &u8)| a.abs_diff(**b) > 40;
         let count = usual.pixels.iter().zip(&other.pixels).filter(differ).count();
-        // only the words tell how large it is
+        // only labels may differ
         assert!(count < usual.pixels.len() / 50, "{count} at {scale}");
     }
 }
 
 #[test]
-fn poses_that_are_not_finite_are_left_out() {
+fn poses_that_are_not_finite_are_not_drawn() {
     let nan = pose(f64::NAN, 0.0, 0.0);
     let far = pose(1e300, -1e300, f64::INFINITY);
     let flat = Pose { position: DVec3::ZERO, orientation: DQuat::from_xyzw(0.0, 0.0, 0.0, 0.0) };
     let case = one_cube(&[pose(0.0, 0.0, 0.0), nan, far, flat, pose(0.5, 0.0, 0.0), nan]);
     case.with(|picture| {
-        let studio = Studio::new(picture);
-        assert!(is_blue(at(&studio, &studio.motion(), DVec3::new(0.5, 0.0, 0.0))));
+        let renderer = Renderer::new(picture);
+        assert!(is_blue(at(&renderer, &renderer.render_motion(), DVec3::new(0.5, 0.0, 0.0))));
         for frame in 0..8 {
-            let _ = studio.frame(frame);
+            let _ = renderer.render_frame(frame);
         }
     });
 }
 
 #[test]
-fn tiny_pictures_are_drawn() {
+fn small_and_empty_sizes_are_rendered() {
     for size in [(0, 0), (1, 1), (1, 300), (300, 1), (7, 3), (320, 200), (321, 201)] {
         let mut case = one_cube(&[pose(0.0, 0.0, 0.0), pose(0.5, 0.5, 0.5)]);
         (case.size, case.title) = (size, "a title that is longer than the picture is wide, 世界");
@@ -214,7 +217,7 @@ fn tiny_pictures_are_drawn() {
 }
 
 #[test]
-fn nothing_at_all_is_drawn() {
+fn empty_input_shows_the_title() {
     let empty = Case {
         bodies: vec![],
         boundary: vec![],
@@ -222,24 +225,24 @@ fn nothing_at_all_is_drawn() {
         size: (320, 200),
         title: "nothing",
     };
-    assert!(empty.with(render).pixels.iter().any(|&p| p < 200), "the title is there");
+    assert!(empty.with(render).pixels.iter().any(|&p| p < 200), "the title is drawn");
 }
 
 #[test]
-fn single_particle_is_seen() {
+fn single_particle_is_visible() {
     let mut case = one_cube(&[pose(0.3, 0.0, 0.0)]);
     case.bodies = vec![(vec![DVec3::ZERO], vec![])];
-    for boundary in [vec![room(1.0)], vec![]] {
+    for boundary in [vec![closed_box(1.0)], vec![]] {
         case.boundary = boundary;
         case.with(|picture| {
-            let studio = Studio::new(picture);
-            assert!(is_blue(at(&studio, &studio.motion(), DVec3::new(0.3, 0.0, 0.0))));
+            let renderer = Renderer::new(picture);
+            assert!(is_blue(at(&renderer, &renderer.render_motion(), DVec3::new(0.3, 0.0, 0.0))));
         });
     }
 }
 
 #[test]
-fn meshes_with_bad_indices_are_drawn_as_far_as_they_go() {
+fn triangles_with_invalid_vertices_are_skipped() {
     let mut case = one_cube(&[pose(0.0, 0.0, 0.0)]);
     case.bodies[0].1.push([0, 1, 99]);
     case.bodies[0].0[3] = DVec3::splat(f64::NAN);
@@ -258,7 +261,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
-    fn no_numbers_make_it_panic(
+    fn arbitrary_numbers_do_not_panic(
         vertices in prop::collection::vec(any_vector(), 0..6),
         triangles in prop::collection::vec([0u32..8, 0u32..8, 0u32..8], 0..4),
         places in prop::collection::vec((any_number(), any_vector(), any_vector()), 0..4),
@@ -288,7 +291,7 @@ proptest! {
         let size = (width, 210);
         for boundary in [&boundary[..], &boundary[..0]] {
             let picture =
-                MotionPicture { title: "any", up, bodies: &bodies, boundary, frames: &frames, size };
+                PictureInput { title: "any", up, bodies: &bodies, boundary, frames: &frames, size };
             let _ = render(&picture);
         }
     }

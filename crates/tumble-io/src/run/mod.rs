@@ -58,5 +58,5 @@ pub use trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
 
 pub(crate) use csv_reader::{CsvReader, parse_energy, parse_trajectory};
 pub(crate) use folder::{ENERGY_FILE, SCENE_FILE, TRAJECTORY_FILE};
-pub(crate) use picture_input::{boundaries, with_studio};
+pub(crate) use picture_input::{boundaries, draw_run};
 pub(crate) use trajectory::write_row;

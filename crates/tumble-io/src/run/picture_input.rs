@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use tumble::{DVec3, Mesh, World};
 
 use crate::appearance::{is_kinematic, surface_of};
-use crate::picture::{self, Boundary, MotionPicture, PictureBody, Studio, View, encode_png};
+use crate::picture::{self, Boundary, PictureBody, PictureInput, Renderer, View, encode_png};
 use crate::scene::Scene;
 
 /// Draws `motion.png`; returns the bytes of the PNG file.
@@ -15,7 +15,7 @@ pub(super) fn motion_picture(
     frames: &[picture::Frame],
 ) -> Result<Vec<u8>, picture::PictureError> {
     let view = (picture::DEFAULT_SIZE, None);
-    with_studio((scene, world), frames, view, |studio| encode_png(&studio.motion()))
+    draw_run((scene, world), frames, view, |renderer| encode_png(&renderer.render_motion()))
 }
 
 /// The walls of a scene, as boundaries of the picture.
@@ -33,12 +33,12 @@ pub(crate) fn boundaries(scene: &Scene) -> Vec<Boundary> {
     boxes.chain(planes).collect()
 }
 
-/// Calls `draw` with a studio for pictures of this size (pixels) and view.
-pub(crate) fn with_studio<T>(
+/// Calls `draw` with a renderer for pictures of this size (pixels) and view.
+pub(crate) fn draw_run<T>(
     (scene, world): (&Scene, &World),
     frames: &[picture::Frame],
     (size, view): ((u32, u32), Option<View>),
-    draw: impl FnOnce(&Studio) -> T,
+    draw: impl FnOnce(&Renderer) -> T,
 ) -> T {
     // a body without a surface is drawn as its particles
     let geometry: Vec<(Cow<Mesh>, Vec<DVec3>)> = world
@@ -60,7 +60,7 @@ pub(crate) fn with_studio<T>(
             PictureBody { name: body.name(), vertices, triangles: &surface.triangles, is_kinematic }
         })
         .collect();
-    let picture = MotionPicture {
+    let picture = PictureInput {
         title: &scene.name,
         up: -scene.gravity,
         bodies: &bodies,
@@ -68,5 +68,5 @@ pub(crate) fn with_studio<T>(
         frames,
         size,
     };
-    draw(&Studio::seen_from(&picture, view))
+    draw(&Renderer::with_view(&picture, view))
 }
