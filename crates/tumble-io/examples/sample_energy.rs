@@ -1,19 +1,19 @@
-//! Draws sample energy charts of made-up ledgers: `sample_energy FOLDER`.
+//! Draws energy charts of synthetic ledgers: `sample_energy FOLDER`.
 
 use std::error::Error;
 use std::path::Path;
 use tumble_io::plot::{EnergyRow, energy_svg};
 
-/// A ball that bounces with drag; `scale` multiplies all energies.
+/// Ledger of a bouncing ball with drag. `scale` multiplies all energies.
 fn bounce(count: usize, scale: f64, duration: f64) -> Vec<EnergyRow> {
     let row = |i: usize| {
-        let part = i as f64 / count.max(2) as f64;
-        let phase = (6.0 * part).fract();
-        let left = 100.0 * (-1.2 * part).exp();
+        let fraction = i as f64 / count.max(2) as f64;
+        let phase = (6.0 * fraction).fract();
+        let left = 100.0 * (-1.2 * fraction).exp();
         let height = 4.0 * phase * (1.0 - phase);
         let noise = ((i * 7919 % 1000) as f64 / 500.0 - 1.0) * 1e-13;
         EnergyRow {
-            time: duration * part,
+            time: duration * fraction,
             kinetic: scale * left * (1.0 - height),
             gravitational: scale * (left * height - 40.0),
             elastic: scale * if phase < 0.03 { 20.0 * left / 100.0 } else { 0.0 },
@@ -22,7 +22,7 @@ fn bounce(count: usize, scale: f64, duration: f64) -> Vec<EnergyRow> {
             dashpot: 0.0,
             work: 0.0,
             total: scale * 60.0,
-            residual: scale * 100.0 * noise * part,
+            residual: scale * 100.0 * noise * fraction,
         }
     };
     (0..count).map(row).collect()

@@ -1,6 +1,6 @@
-//! Draws sample pictures of made-up motions: `sample_pictures FOLDER [MESH.obj SCALE]`.
+//! Draws pictures of synthetic motions: `sample_pictures FOLDER [MESH.obj SCALE]`.
 //!
-//! The motions are curves, not simulations: what counts here is how a picture looks.
+//! The motions are not simulated. The example serves to inspect the rendering.
 
 use std::error::Error;
 use std::path::Path;
@@ -12,8 +12,8 @@ use tumble_io::picture::{
 
 type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// A ball of `count` rings and twice as many sectors.
-fn ball(radius: f64, count: u32) -> Mesh {
+/// Mesh of a sphere with `count` rings and twice as many sectors.
+fn sphere(radius: f64, count: u32) -> Mesh {
     let mut vertices = Vec::new();
     let mut triangles = Vec::new();
     let sectors = 2 * count;
@@ -41,7 +41,7 @@ fn brick(half: DVec3) -> Mesh {
     ((0..8).map(corner).collect(), quads.into_iter().flat_map(halves).collect())
 }
 
-/// Vertices and faces of an OBJ file, moved to the mean of its vertices.
+/// Reads vertices and triangles of an OBJ file and moves the mean of the vertices to the origin.
 fn read_obj(path: &str, scale: f64) -> Result<Mesh, Box<dyn Error>> {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for line in std::fs::read_to_string(path)?.lines() {
@@ -62,7 +62,8 @@ fn read_obj(path: &str, scale: f64) -> Result<Mesh, Box<dyn Error>> {
     Ok((vertices, triangles))
 }
 
-/// A throw with bounces off the walls of a box (and none off an open top), spinning about `spin`.
+/// A spinning body thrown inside a box, with a coefficient of restitution of 0.8 at the walls. Very
+/// large bounds stand for missing walls.
 struct Throw {
     start: DVec3,
     velocity: DVec3,
@@ -79,10 +80,10 @@ impl Throw {
         let (mut orientation, mut spin) = (DQuat::IDENTITY, self.spin);
         let steps = 40;
         let dt = duration / (count * steps) as f64;
-        let mut out = Vec::new();
+        let mut poses = Vec::new();
         for step in 0..=count * steps {
             if step % steps == 0 {
-                out.push((step as f64 * dt, Pose { position, orientation }));
+                poses.push((step as f64 * dt, Pose { position, orientation }));
             }
             velocity += self.gravity * dt;
             position += velocity * dt;
@@ -97,11 +98,11 @@ impl Throw {
                 }
             }
         }
-        out
+        poses
     }
 }
 
-fn together(motions: &[Vec<(f64, Pose)>]) -> Vec<Frame> {
+fn to_frames(motions: &[Vec<(f64, Pose)>]) -> Vec<Frame> {
     let frame = |i: usize| Frame {
         time: motions[0][i].0,
         poses: motions.iter().map(|motion| motion[i].1).collect(),
@@ -132,7 +133,7 @@ fn draw(folder: &Path, sample: &Sample, size: (u32, u32)) -> Result<(), Box<dyn 
             is_kinematic: false,
         })
         .collect();
-    let picture = PictureInput {
+    let input = PictureInput {
         title: sample.title,
         up: sample.up,
         bodies: &bodies,
@@ -141,10 +142,15 @@ fn draw(folder: &Path, sample: &Sample, size: (u32, u32)) -> Result<(), Box<dyn 
         size,
     };
     let start = Instant::now();
-    let image = render(&picture);
-    let drawn = start.elapsed();
+    let image = render(&input);
+    let render_time = start.elapsed();
     let png = encode_png(&image)?;
-    println!("{:12} {drawn:8.2?} {:8.2?} {} kB", sample.name, start.elapsed(), png.len() / 1024);
+    println!(
+        "{:12} {render_time:8.2?} {:8.2?} {} kB",
+        sample.name,
+        start.elapsed(),
+        png.len() / 1024
+    );
     std::fs::write(folder.join(format!("{}.png", sample.name)), png)?;
     Ok(())
 }
@@ -174,9 +180,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => brick.clone(),
     };
     let point: Mesh = (vec![DVec3::ZERO], Vec::new());
-    let small = ball(0.07, 16);
-    let cloud: Mesh = (ball(0.2, 14).0, Vec::new());
-    let huge = ball(0.4, 720);
+    let small = sphere(0.07, 16);
+    let cloud: Mesh = (sphere(0.2, 14).0, Vec::new());
+    let huge = sphere(0.4, 720);
     let y = DVec3::Y;
     let velocity = DVec3::new(4.0, 2.0, 3.0);
     let spin = DVec3::new(0.0, 100.0, 0.0);
@@ -188,13 +194,14 @@ fn main() -> Result<(), Box<dyn Error>> {
         high: DVec3::splat(9e9),
         ..throw(1.0, velocity, DVec3::new(3.0, 1.0, 2.0), 0.2)
     };
-    let crowd: Vec<_> = (0..200)
+    let spheres: Vec<_> = (0..200)
         .map(|i: i32| {
             let at = DVec3::new(f64::from(i % 6), f64::from(i / 36), f64::from(i / 6 % 6)) * 0.3;
-            let swirl = DVec3::new(f64::from(i * 37 % 11) - 5.0, 1.0, f64::from(i * 53 % 13) - 6.0);
+            let velocity =
+                DVec3::new(f64::from(i * 37 % 11) - 5.0, 1.0, f64::from(i * 53 % 13) - 6.0);
             Throw {
                 start: at - DVec3::new(0.75, 0.0, 0.75),
-                ..throw(1.0, 0.3 * swirl, DVec3::ONE, 0.07)
+                ..throw(1.0, 0.3 * velocity, DVec3::ONE, 0.07)
             }
             .frames(1.5, 90)
         })
@@ -212,7 +219,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         low: DVec3::new(-9e9, -9e9, 0.0),
         ..free(DVec3::ZERO)
     };
-    let one = |motion: &Throw, time, count| together(&[motion.frames(time, count)]);
+    let single = |motion: &Throw, time, count| to_frames(&[motion.frames(time, count)]);
     let sample = |name, title, meshes, boundary, frames| Sample {
         name,
         title,
@@ -228,42 +235,42 @@ fn main() -> Result<(), Box<dyn Error>> {
             "a mesh in an open box",
             vec![&thrown],
             vec![open_box(1.0)],
-            one(&bounce, 3.0, 300),
+            single(&bounce, 3.0, 300),
         ),
         sample(
             "short",
             "a mesh in an open box",
             vec![&thrown],
             vec![open_box(1.0)],
-            one(&bounce, 0.8, 80),
+            single(&bounce, 0.8, 80),
         ),
         sample(
             "point",
             "a point",
             vec![&point],
             vec![open_box(1.0)],
-            one(&throw(1.0, velocity, spin, 0.0), 1.2, 200),
+            single(&throw(1.0, velocity, spin, 0.0), 1.2, 200),
         ),
         sample(
             "crowd",
             "two hundred balls",
             vec![&small; 200],
             vec![open_box(1.0)],
-            together(&crowd),
+            to_frames(&spheres),
         ),
         sample(
             "tall",
             "out through the top",
             vec![&thrown],
             vec![open_box(1.0)],
-            one(&throw(1.0, DVec3::new(0.3, 9.0, 0.2), spin, 0.25), 2.4, 240),
+            single(&throw(1.0, DVec3::new(0.3, 9.0, 0.2), spin, 0.25), 2.4, 240),
         ),
         sample(
             "plane",
             "bricks and a cloud on a plane",
             vec![&brick, &cloud, &brick],
             flat(y),
-            together(&[
+            to_frames(&[
                 over_plane(0.0, 3.0).frames(1.5, 150),
                 over_plane(-0.9, 4.0).frames(1.5, 150),
                 over_plane(1.2, 2.0).frames(1.5, 150),
@@ -276,7 +283,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 "gravity along −z",
                 vec![&brick],
                 flat(DVec3::Z),
-                one(&Throw { radius: 0.15, ..tilted }, 1.6, 160),
+                single(&Throw { radius: 0.15, ..tilted }, 1.6, 160),
             )
         },
         sample(
@@ -284,7 +291,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             "free flight",
             vec![&brick, &thrown],
             Vec::new(),
-            together(&[
+            to_frames(&[
                 free(DVec3::new(1.0, 0.2, 0.0)).frames(3.0, 100),
                 Throw { start: DVec3::new(2.0, 0.8, -0.6), ..free(DVec3::new(-0.6, -0.1, 0.8)) }
                     .frames(3.0, 100),
@@ -295,22 +302,22 @@ fn main() -> Result<(), Box<dyn Error>> {
             "only the start",
             vec![&thrown],
             vec![open_box(1.0)],
-            one(&bounce, 0.01, 1)[..1].to_vec(),
+            single(&bounce, 0.01, 1)[..1].to_vec(),
         ),
         sample(
             "million",
             "a million vertices",
             vec![&huge],
             vec![open_box(1.0)],
-            one(&throw(1.0, velocity, spin, 0.4), 1.0, 100),
+            single(&throw(1.0, velocity, spin, 0.4), 1.0, 100),
         ),
     ];
     for sample in &samples {
         draw(folder, sample, DEFAULT_SIZE)?;
     }
-    let little = Sample {
+    let small_picture = Sample {
         name: "little",
-        ..sample("", "little", vec![&thrown], vec![open_box(1.0)], one(&bounce, 0.8, 80))
+        ..sample("", "little", vec![&thrown], vec![open_box(1.0)], single(&bounce, 0.8, 80))
     };
-    draw(folder, &little, (480, 300))
+    draw(folder, &small_picture, (480, 300))
 }

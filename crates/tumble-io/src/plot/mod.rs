@@ -1,9 +1,9 @@
-//! Charts of a run as SVG: text and lines that any browser shows, drawn without system fonts.
+//! Charts of a run as SVG, drawn without system fonts.
 //!
-//! | file | does |
+//! | file | contents |
 //! |---|---|
-//! | `energy` | the energy ledger over time |
-//! | `axis` | ranges and tick labels for any magnitude |
+//! | `energy` | chart of the energy ledger over time |
+//! | `axis` | axis ranges and tick labels |
 
 mod axis;
 mod energy;

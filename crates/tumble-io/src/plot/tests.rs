@@ -1,4 +1,4 @@
-//! Whether the chart is well formed and says what is in the data.
+//! Tests of the energy chart and its axes.
 
 use super::axis::Axis;
 use super::{EnergyRow, energy_svg};
@@ -12,7 +12,7 @@ fn ramp(count: usize) -> Vec<EnergyRow> {
     (0..count).map(row).collect()
 }
 
-/// Each tag is closed, in order, and text holds no bare signs of the markup.
+/// Asserts that all tags are closed in order and that text contains no unescaped markup.
 fn assert_well_formed(svg: &str) {
     let mut open = Vec::new();
     let mut rest = svg;
@@ -32,7 +32,7 @@ fn assert_well_formed(svg: &str) {
 }
 
 #[test]
-fn names_what_is_not_zero_throughout() {
+fn only_nonzero_terms_are_drawn() {
     let svg = energy_svg("throw", &ramp(200)).unwrap();
     assert_well_formed(&svg);
     for name in ["kinetic", "lost to drag", "total", "residual", "time (s)", "energy (J)", "throw"]
@@ -46,14 +46,14 @@ fn names_what_is_not_zero_throughout() {
 }
 
 #[test]
-fn title_cannot_break_the_markup() {
+fn title_is_escaped() {
     let svg = energy_svg("a <b> & \"c\" \u{1}\u{ffff}", &ramp(3)).unwrap();
     assert_well_formed(&svg);
     assert!(svg.contains("a &lt;b&gt; &amp; "));
 }
 
 #[test]
-fn million_rows_keep_their_peaks_and_stay_small() {
+fn downsampling_preserves_peaks_and_limits_size() {
     let mut rows = ramp(1_000_000);
     rows[123_456].elastic = 1e7;
     let svg = energy_svg("long", &rows).unwrap();
@@ -62,7 +62,7 @@ fn million_rows_keep_their_peaks_and_stay_small() {
 }
 
 #[test]
-fn few_rows_are_drawn() {
+fn short_ledgers_give_well_formed_charts() {
     for rows in [vec![], ramp(1), ramp(2), vec![EnergyRow::default(); 5]] {
         assert_well_formed(&energy_svg("few", &rows).unwrap());
     }
@@ -70,18 +70,18 @@ fn few_rows_are_drawn() {
 
 #[test]
 fn labels_are_short_at_any_magnitude() {
-    let axis = |high: f64| Axis::holding([0.0, high].into_iter(), 0.0);
+    let axis = |high: f64| Axis::from_values([0.0, high].into_iter(), 0.0);
     assert_eq!(axis(1e7).label(0.5), "5e6");
     assert_eq!(axis(3.0).label(1.5), "1.5");
     assert_eq!(axis(3e-12).label(1.5), "1.5e-12");
     assert_eq!(axis(2000.0).label(0.5), "500");
     assert_eq!(axis(3.0).label(-1e-17), "0");
-    assert_eq!(axis(1e-14).scientific(0.0), "0");
+    assert_eq!(axis(1e-14).scientific_label(0.0), "0");
 }
 
 #[test]
-fn constant_gets_an_axis_around_it() {
-    let axis = Axis::holding([7e5; 4].into_iter(), 0.05);
+fn axis_contains_a_constant() {
+    let axis = Axis::from_values([7e5; 4].into_iter(), 0.05);
     assert!(axis.low < 7.0 && axis.high > 7.0);
 }
 
@@ -89,7 +89,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn no_numbers_make_it_panic(values in prop::collection::vec(any::<[f64; 4]>(), 0..5)) {
+    fn arbitrary_numbers_give_well_formed_charts(values in prop::collection::vec(any::<[f64; 4]>(), 0..5)) {
         let row = |&[time, kinetic, total, residual]: &[f64; 4]| {
             EnergyRow { time, kinetic, total, residual, ..EnergyRow::default() }
         };
@@ -98,8 +98,8 @@ proptest! {
     }
 
     #[test]
-    fn near_constants_are_drawn(middle in -1e9f64..1e9, width in 0.0f64..1e-3) {
-        let ends = [middle, middle + width];
+    fn nearly_constant_values_give_well_formed_charts(centre in -1e9f64..1e9, width in 0.0f64..1e-3) {
+        let ends = [centre, centre + width];
         let rows = ends.map(|total| EnergyRow { total, time: total, ..EnergyRow::default() });
         assert_well_formed(&energy_svg("near", &rows).unwrap());
     }
