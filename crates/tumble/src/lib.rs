@@ -1,18 +1,19 @@
 //! Rigid bodies made of particles.
 //!
-//! A body is a set of particles that keep their distances: the vertices of a mesh, or points
-//! sampled from it. Gravity and drag act on every particle, walls push back those behind them, and
-//! what the particles feel adds up to the force and torque that move the body.
+//! A body is a set of particles at fixed distances: the vertices of a mesh, or points sampled from it. Gravity and drag act on every
+//! particle, walls push back the particles behind them, and the forces on the particles add up to the force and torque on the
+//! body.
 //!
 //! # Limits
-//! Bodies touch each other by particles against surfaces ([`Surface`]): edge against edge is not seen. Walls are planes.
+//! Contact between bodies acts at particles, against the [`Surface`] of the other body: edge against edge is not detected. Walls
+//! are planes.
 //!
 //! # A tour
 //! - [`Shape`]: particles and mass distribution, made from points or a [`Mesh`].
-//! - [`World`]: bodies of these shapes among walls. Build it, step it, read it.
-//! - [`step::step`]: the step, as a list of [`stage`]s. Start here to read the physics.
-//! - [`Model`], [`State`], [`Scratch`]: what is constant, what evolves, what may be forgotten.
-//! - [`Energy`]: where every joule is. [`PenetrationDepths`]: how deep contacts are.
+//! - [`World`]: bodies with shapes, and walls. Build it, step it, read it.
+//! - [`step::step`]: the time step, as a list of [`stage`]s. Start here to read the physics.
+//! - [`Model`], [`State`], [`Scratch`]: what is constant, what evolves, and buffers.
+//! - [`Energy`]: the energy ledger. [`PenetrationDepths`]: how deep contacts are.
 //!
 //! ```
 //! use tumble::{Body, DVec3, Shape, WallBox, World};
