@@ -163,7 +163,7 @@ fn inconsistent_rows_are_rejected() {
     dir.write("o/trajectory.csv", trajectory.replace("other box", "another"));
     rejected(&["another row than that of \"other box\" at t = 0 s"]);
     dir.write("o/trajectory.csv", "x".repeat(100_000));
-    rejected(&["o/trajectory.csv has a row without an end"]);
+    rejected(&["o/trajectory.csv has a row that is too long"]);
     dir.write("o/trajectory.csv", "");
     rejected(&["does not begin with its header"]);
     fs::remove_file(dir.path("o/trajectory.csv")).unwrap();
