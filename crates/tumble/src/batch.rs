@@ -20,13 +20,13 @@ pub struct Batch<'a> {
     pub first: usize,
     /// States of the bodies.
     pub bodies: &'a mut [BodyState],
-    /// Friction springs at walls, one list a body.
+    /// Friction springs at walls, one list per body.
     pub springs: &'a mut [Vec<FrictionSpring>],
     /// Whether each body may touch a wall or another body within the step.
     pub may_touch: &'a mut [bool],
     /// Forces on the bodies.
     pub forces: &'a mut [BodyForces],
-    /// Friction springs at walls after the latest evaluation, one list a body.
+    /// Friction springs at walls after the latest evaluation, one list per body.
     pub next_springs: &'a mut [Vec<FrictionSpring>],
     /// Poses of the bodies for contact between bodies; empty before the first neighbour lists are built.
     pub(crate) poses: &'a mut [BodyPose],

@@ -34,10 +34,10 @@ impl<'a> Kinematics<'a> {
 
     /// The same pose with the velocities in the middle of a kick by `wrench` over the time `h` (s).
     pub fn at_mid_kick(&self, wrench: &Wrench, h: f64) -> Self {
-        let spin = self.body.angular_velocity(self.rotation, wrench.torque);
+        let angular_acceleration = self.body.angular_velocity(self.rotation, wrench.torque);
         Self {
             velocity: self.velocity + wrench.force * (0.5 * h / self.body.mass),
-            angular_velocity: self.angular_velocity + spin * (0.5 * h),
+            angular_velocity: self.angular_velocity + angular_acceleration * (0.5 * h),
             ..*self
         }
     }

@@ -10,11 +10,11 @@ use crate::{BodyForces, FrictionSpring};
 pub struct Scratch {
     /// Whether each body may touch a wall or another body within the step.
     pub may_touch: Vec<bool>,
-    /// Forces and torques of the latest evaluation, one entry a body.
+    /// Forces and torques of the latest evaluation, one entry per body.
     pub forces: Vec<BodyForces>,
-    /// The friction springs at walls after the latest evaluation, one list a body.
+    /// The friction springs at walls after the latest evaluation, one list per body.
     pub springs: Vec<Vec<FrictionSpring>>,
-    /// Buffers, one entry a batch of bodies.
+    /// Buffers, one entry per batch of bodies.
     pub(crate) workspaces: Vec<Workspace>,
     /// Contacts between bodies, and of spheres with walls.
     pub(crate) body_contacts: BodyContacts,

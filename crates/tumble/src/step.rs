@@ -9,7 +9,7 @@ pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(
         match (model.integrator, model.energy_tolerance) {
             (Integrator::Splitting, None) => drift_kick_drift(model, state, scratch),
             (Integrator::Splitting, Some(tolerance)) => adaptive(model, state, scratch, tolerance),
-            (Integrator::Euler, _) => explicit_euler(model, state, scratch),
+            (Integrator::Euler, _) => semi_implicit_euler(model, state, scratch),
         }
         state.step += 1;
         state.time = state.step as f64 * model.dt;
@@ -35,7 +35,7 @@ fn drift_kick_drift(model: &Model, state: &mut State, scratch: &mut Scratch) {
     });
 }
 
-/// The same in sub-steps that bound the energy error, for bodies that touch walls only.
+/// The same in sub-steps that bound the energy error. The builder allows it only without contact between bodies.
 fn adaptive(model: &Model, state: &mut State, scratch: &mut Scratch, tolerance: f64) {
     for_each_batch(model, state, scratch, |batch| {
         stage::find_free_flight(batch, model.dt);
@@ -46,13 +46,13 @@ fn adaptive(model: &Model, state: &mut State, scratch: &mut Scratch, tolerance: 
     });
 }
 
-/// The basic system. Numbers are its lines in `docs/theory.md`; line 1, mass properties, is done once a shape.
-fn explicit_euler(model: &Model, state: &mut State, scratch: &mut Scratch) {
+/// The basic system: semi-implicit Euler in translation, explicit in rotation. Numbers are its lines in `docs/theory.md`.
+fn semi_implicit_euler(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let before = |batch: &mut Batch| {
         stage::gravity(batch); // 2
         stage::drag(batch); // 8
         stage::find_free_flight(batch, 0.0);
-        stage::wall_contact(batch, 0.0); // 9: wall springs; 3 and 4: their force and torque
+        stage::wall_contact(batch, 0.0); // 9, with 3 and 4; h = 0: at the current velocities
     };
     around_body_contact(model, state, scratch, before, |batch| {
         stage::euler(batch); // 5: velocity, position; 6: quaternion; 7: angular momentum, inertia

@@ -127,10 +127,10 @@ pub(super) fn overlaps(model: &Model, state: &State) -> Vec<BuildError> {
     let name = |index: u32| model.names[index as usize].clone();
     let pairs = crate::contact::initial_overlap::overlaps(model, state).into_iter();
     pairs
-        .map(|(first, second, depth)| BuildError::Overlap {
-            first: name(first),
-            second: name(second),
-            depth,
+        .map(|overlap| BuildError::Overlap {
+            first: name(overlap.first),
+            second: name(overlap.second),
+            depth: overlap.depth,
         })
         .collect()
 }

@@ -19,7 +19,7 @@ use crate::{BodyForces, ContactKind, Integrator, Model, PairSpring, State};
 pub(crate) struct BodyContacts {
     poses: Vec<BodyPose>,
     lists: NeighbourLists,
-    /// Contacts, one entry a chunk of bodies.
+    /// Contacts, one entry per chunk of bodies.
     contacts: Vec<ChunkContacts>,
     /// Buffers that no chunk uses at present.
     spare: Vec<ContactBuffers>,
@@ -114,7 +114,7 @@ impl BodyContacts {
         }
     }
 
-    /// Moves the friction springs after the latest evaluation into the state; to be called once a step.
+    /// Moves the friction springs after the latest evaluation into the state; to be called once per step.
     pub fn store_friction_springs(&mut self, pair_springs: &mut Vec<PairSpring>) {
         for contacts in &mut self.contacts {
             self.springs.extend_from_slice(&contacts.springs);
@@ -162,7 +162,7 @@ impl BodyContacts {
         }
     }
 
-    /// PenetrationDepths of the deepest contact between two bodies and of the deepest one between a sphere and a wall (m); 0 without contact.
+    /// Penetration depths of the deepest contact between two bodies and of the deepest one between a sphere and a wall (m); 0 without contact.
     pub fn max_depths(&mut self, model: &Model, state: &State) -> [f64; 2] {
         let mut depths = [0.0f64; 2];
         if model.has_body_contact {

@@ -89,7 +89,7 @@ impl ChunkContacts {
     pub(super) fn store_springs(&mut self, index: usize, pairs: &[Pair]) {
         let lanes = &self.lanes[index];
         for lane in lanes.in_contact().filter(|&lane| lanes.friction[lane] > 0.0) {
-            let pair = self.pairs[lanes.pair[lane] as usize].pair;
+            let pair = self.pairs[lanes.pair[lane] as usize].list_index;
             let mut spring = lanes.spring_key(lane, &pairs[pair as usize]);
             spring.stretch = lanes.kept_stretch(lane);
             self.springs.push(spring);
@@ -130,7 +130,7 @@ impl ChunkContacts {
     ) {
         for lanes in &self.lanes[..self.lanes_used] {
             for lane in lanes.in_contact() {
-                let pair = self.pairs[lanes.pair[lane] as usize].pair;
+                let pair = self.pairs[lanes.pair[lane] as usize].list_index;
                 let normal = vector(&lanes.normal, lane);
                 visit(&neighbours.pairs[pair as usize], normal, lanes.depth[lane]);
             }

@@ -1,6 +1,6 @@
 //! Contacts between bodies and of spheres with walls, eight side by side.
 //!
-//! Only data lives here. Each step of the pipeline has its own file: [`geometry`](super::geometry) computes normals and
+//! The data of eight contacts, with accessors. Each step of the pipeline has its own file: [`geometry`](super::geometry) computes normals and
 //! depths, [`friction`](super::friction) advances the tangential springs, [`forces`](super::forces) evaluates the law.
 
 use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
@@ -12,7 +12,7 @@ use super::pose::{BodyPose, pose_or_wall};
 use crate::lanes::{Columns, LANES, set, vector};
 use crate::{ContactKind, PairSpring};
 
-/// Up to eight contacts, one a lane. Lanes without a contact have depth zero.
+/// Up to eight contacts, one per lane. Lanes without a contact have depth zero.
 #[derive(Clone, Debug)]
 pub(super) struct ContactLanes {
     /// Number of lanes in use.
@@ -65,16 +65,16 @@ pub(super) struct LaneInput {
     /// Position of the particle (m).
     pub particle_position: Columns,
     /// Vector from the second sphere to the first (m); for a wall or mesh, n.
-    pub separation: Columns,
+    pub separation_or_normal: Columns,
     /// Distance at which the spheres touch (m); for a wall or mesh, the depth (m).
-    pub contact_distance: [f64; LANES],
+    pub contact_distance_or_depth: [f64; LANES],
     /// Centres of mass (m).
     pub position: Columns,
     pub other_position: Columns,
     /// Relative velocity and both angular velocities, in the middle of the latest flight.
     pub drift_velocity: Columns,
-    pub drift_spin: Columns,
-    pub other_drift_spin: Columns,
+    pub drift_angular_velocity: Columns,
+    pub other_drift_angular_velocity: Columns,
     /// Above zero where the contact has a spring from the latest kick.
     pub has_spring: [f64; LANES],
 }

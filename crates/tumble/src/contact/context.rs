@@ -1,4 +1,4 @@
-//! What one evaluation of the contacts reads.
+//! Inputs of one evaluation of the contacts.
 
 use super::pose::BodyPose;
 use crate::{Model, PairSpring};

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, f64x8, prelude::*};
 
 use super::contact_lanes::{ContactLanes, LaneVelocities};
-use super::law::coulomb::dashpot_part;
+use super::law::coulomb::dashpot_fraction;
 use super::law::{NormalForce, NormalLaw};
 use super::pair_forces::{LaneWrenches, PairForces, PairLosses};
 use super::pose::BodyPose;
@@ -38,7 +38,7 @@ impl ContactLanes {
             let spring = self.friction_spring_force::<S, PREDICT>(simd, limit, &mut slip);
             let dashpot =
                 u.perpendicular_to(n) * (zero - f64x8::simd_from(simd, self.friction_damping));
-            let dashpot = dashpot * dashpot_part(simd, spring, dashpot, limit);
+            let dashpot = dashpot * dashpot_fraction(simd, spring, dashpot, limit);
             force += spring + dashpot;
             dashpot_force += dashpot;
             if !PREDICT && self.has_surface_velocity {
@@ -69,7 +69,7 @@ impl ContactLanes {
         }
     }
 
-    /// Force of the tangential springs, cut to the limit μ F_n (N); `slip` gets the energy that the cut dissipates (J).
+    /// Force of the tangential springs, limited to μ F_n (N); `slip` gets the energy that the cut dissipates (J).
     #[inline(always)]
     fn friction_spring_force<S: Simd, const PREDICT: bool>(
         &mut self,

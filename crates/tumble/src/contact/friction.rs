@@ -29,18 +29,21 @@ impl ContactLanes {
         h: f64,
     ) {
         let n = Vec3x8::load(simd, &self.normal);
-        let (w, other_w) =
-            (Vec3x8::load(simd, &input.drift_spin), Vec3x8::load(simd, &input.other_drift_spin));
+        let (omega, other_omega) = (
+            Vec3x8::load(simd, &input.drift_angular_velocity),
+            Vec3x8::load(simd, &input.other_drift_angular_velocity),
+        );
         let zero = f64x8::splat(simd, 0.0);
 
         // the old stretch, turned about n with the surface, then into the tangent plane at its old length
         let has_spring = f64x8::simd_from(simd, input.has_spring).simd_gt(zero);
         let zeros = Vec3x8::splat(simd, DVec3::ZERO);
         let old = Vec3x8::select(has_spring, Vec3x8::load(simd, &self.old_stretch), zeros);
-        let spin =
-            self.is_kind(simd, ContactKind::SphereSphere).select((w + other_w).dot(n) * 0.5, zero);
-        let spin = self.is_kind(simd, ContactKind::PointMesh).select(other_w.dot(n), spin);
-        let spin = self.is_kind(simd, ContactKind::MeshPoint).select(w.dot(n), spin);
+        let spin = self
+            .is_kind(simd, ContactKind::SphereSphere)
+            .select((omega + other_omega).dot(n) * 0.5, zero);
+        let spin = self.is_kind(simd, ContactKind::PointMesh).select(other_omega.dot(n), spin);
+        let spin = self.is_kind(simd, ContactKind::MeshPoint).select(omega.dot(n), spin);
         let tangential = (old + n.cross(old) * (spin * h)).perpendicular_to(n);
         let (old_square, new_square) = (old.dot(old), tangential.dot(tangential));
         // nothing is left of a stretch whose normal turned by a right angle
@@ -55,17 +58,17 @@ impl ContactLanes {
         let [offset, other_offset] = self.contact_offsets(simd, depth);
         let half_back = f64x8::splat(simd, -0.5 * h);
         let drift = Vec3x8::load(simd, &input.drift_velocity);
-        let mid_arm = arm + w.cross(arm + n * offset) * half_back;
-        let other_mid_arm = other_arm + other_w.cross(other_arm - n * other_offset) * half_back;
+        let mid_arm = arm + omega.cross(arm + n * offset) * half_back;
+        let other_mid_arm = other_arm + other_omega.cross(other_arm - n * other_offset) * half_back;
         let half = f64x8::splat(simd, 0.5 * h);
-        let on_mesh = other_arm - (drift + w.cross(mid_arm)) * half;
+        let on_mesh = other_arm - (drift + omega.cross(mid_arm)) * half;
         let first_is_point = self.is_kind(simd, ContactKind::PointMesh)
             | self.is_kind(simd, ContactKind::SphereWall);
         let other_mid_arm = Vec3x8::select(first_is_point, on_mesh, other_mid_arm);
-        let on_mesh = arm + (drift - other_w.cross(other_mid_arm)) * half;
+        let on_mesh = arm + (drift - other_omega.cross(other_mid_arm)) * half;
         let mid_arm = Vec3x8::select(self.is_kind(simd, ContactKind::MeshPoint), on_mesh, mid_arm);
 
-        let mut u = drift + (w.cross(mid_arm) - other_w.cross(other_mid_arm));
+        let mut u = drift + (omega.cross(mid_arm) - other_omega.cross(other_mid_arm));
         if self.has_surface_velocity {
             u += Vec3x8::load(simd, &self.surface_velocity(poses)).perpendicular_to(n);
         }

@@ -1,4 +1,4 @@
-//! What goes into the pipeline for a batch of bodies, and what comes out: poses in, contact forces out.
+//! The interface between batches of bodies and the contact pipeline: poses, predicted velocities, forces per body.
 
 use super::chunk_contacts::{ChunkContacts, NO_CONTACT};
 use super::neighbour_list::NeighbourLists;
@@ -43,8 +43,8 @@ pub(crate) fn predict_velocities(
         if body.is_free() && sum.total != Wrench::default() {
             let wrench = sum.total + forces.contact();
             pose.velocity += wrench.force * (0.5 * h / body.mass);
-            let spin = body.angular_velocity(pose.rotation, wrench.torque);
-            pose.angular_velocity += spin * (0.5 * h);
+            let angular_acceleration = body.angular_velocity(pose.rotation, wrench.torque);
+            pose.angular_velocity += angular_acceleration * (0.5 * h);
         }
     }
 }

@@ -10,8 +10,8 @@ impl ContactLanes {
     /// Computes normals, depths and arms. Lanes that do not touch get a negative depth: minus the gap.
     #[inline(always)]
     pub fn compute_geometry<S: Simd>(&mut self, simd: S, input: &LaneInput) {
-        let separation = Vec3x8::load(simd, &input.separation);
-        let contact_distance = f64x8::simd_from(simd, input.contact_distance);
+        let separation = Vec3x8::load(simd, &input.separation_or_normal);
+        let contact_distance = f64x8::simd_from(simd, input.contact_distance_or_depth);
         let is_spheres = self.is_kind(simd, ContactKind::SphereSphere);
         let distance = separation.dot(separation).sqrt();
         let depth = is_spheres.select(contact_distance - distance, contact_distance);

@@ -6,7 +6,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::pair::Point;
+use super::pair::ListedContact;
 use super::pose::BodyPose;
 use crate::BodyModel;
 use crate::distance::Patch;
@@ -24,7 +24,7 @@ pub(super) const BLOCK: usize = 16;
 pub(super) struct MeshCache {
     /// The part of a mesh near a point, for points that were queried.
     patches: Vec<Patch>,
-    /// One entry a pair, in the order of pairs.
+    /// One entry per pair, in the order of pairs.
     pairs: Vec<PairCache>,
     /// For blocks of points, pair by pair: no contact until the relative path of the pair is this long (m).
     block_clear_until: Vec<f64>,
@@ -157,19 +157,19 @@ impl MeshCache {
     }
 
     /// Copies a point of the list before, with its patch.
-    pub fn copy_point(&mut self, before: &Self, point: &Point) -> Point {
+    pub fn copy_point(&mut self, before: &Self, point: &ListedContact) -> ListedContact {
         let patch = before.patch(point);
-        Point { other: patch.map_or(NO_PATCH, |&patch| self.add_patch(patch)), ..*point }
+        ListedContact { other: patch.map_or(NO_PATCH, |&patch| self.add_patch(patch)), ..*point }
     }
 
     /// The patch of a point, if it has one.
     #[inline(always)]
-    pub fn patch(&self, point: &Point) -> Option<&Patch> {
+    pub fn patch(&self, point: &ListedContact) -> Option<&Patch> {
         self.patches.get(point.other as usize)
     }
 
     /// The patch of a point; an empty one where it has none yet.
-    pub fn patch_mut(&mut self, point: &mut Point) -> &mut Patch {
+    pub fn patch_mut(&mut self, point: &mut ListedContact) -> &mut Patch {
         if point.other == NO_PATCH {
             point.other = self.add_patch(Patch::NONE);
         }

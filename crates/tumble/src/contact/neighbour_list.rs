@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::broad_phase::{Ball, Grid};
 use super::mesh_cache::{MeshCache, NO_PATCH, RelativePose};
 use super::pair::{
-    Pair, Point, contact_distance, contact_kinds, contact_law, feature_size, sphere_radius,
+    ListedContact, Pair, contact_distance, contact_kinds, contact_law, feature_size, sphere_radius,
     tunnelling_limit,
 };
 use super::pose::BodyPose;
@@ -24,13 +24,13 @@ const SKIN: f64 = 0.2;
 #[derive(Clone, Debug, Default)]
 pub(super) struct ChunkNeighbours {
     pub pairs: Vec<Pair>,
-    pub points: Vec<Point>,
+    pub points: Vec<ListedContact>,
     /// The last chunk that holds a second body of these pairs, at least this chunk.
     pub last_chunk: usize,
     pub mesh_cache: MeshCache,
     /// Pairs, points and cache of the list before.
     old_pairs: Vec<Pair>,
-    old_points: Vec<Point>,
+    old_points: Vec<ListedContact>,
     old_mesh_cache: MeshCache,
     /// Buffers for slots of particles.
     slots: [Vec<u32>; 2],
@@ -39,7 +39,7 @@ pub(super) struct ChunkNeighbours {
 /// The neighbour lists of all bodies.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NeighbourLists {
-    /// One entry a chunk of bodies.
+    /// One entry per chunk of bodies.
     pub chunks: Vec<ChunkNeighbours>,
     /// For each body as second body of pairs: chunk and index of the pair, in the order of first bodies.
     pub second_pairs: Vec<(u32, u32)>,
@@ -144,7 +144,7 @@ impl ChunkNeighbours {
             let start = self.points.len() as u32;
             for slot in 0..body.shape.particles().len() as u32 {
                 if wall.depth(pose.particle_position(body, slot)) > -(radius + pose.skin) {
-                    self.points.push(Point { particle: slot, other: 0, clear_until: 0.0 });
+                    self.points.push(ListedContact { particle: slot, other: 0, clear_until: 0.0 });
                 }
             }
             self.add_pair(Pair {
@@ -231,7 +231,7 @@ impl ChunkNeighbours {
                 let distance = position.distance(b.pose.particle_position(b.body, other));
                 let gap = distance - contact_distance;
                 if gap < margin {
-                    self.points.push(Point { particle, other, clear_until: path + gap });
+                    self.points.push(ListedContact { particle, other, clear_until: path + gap });
                 }
             }
         }
@@ -269,7 +269,7 @@ impl ChunkNeighbours {
             while old.next_if(|point| point.particle < particle).is_some() {}
             let point = match old.next_if(|point| point.particle == particle) {
                 Some(point) => self.mesh_cache.copy_point(&self.old_mesh_cache, point),
-                None => Point { particle, other: NO_PATCH, clear_until: 0.0 },
+                None => ListedContact { particle, other: NO_PATCH, clear_until: 0.0 },
             };
             self.points.push(point);
         }
@@ -280,7 +280,11 @@ impl ChunkNeighbours {
 }
 
 /// The points of one pair of a list.
-fn points_of<'a>(pairs: &[Pair], points: &'a [Point], order: PairOrder) -> &'a [Point] {
+fn points_of<'a>(
+    pairs: &[Pair],
+    points: &'a [ListedContact],
+    order: PairOrder,
+) -> &'a [ListedContact] {
     match pairs.binary_search_by_key(&order, Pair::order) {
         Ok(found) => &points[pairs[found].start as usize..pairs[found].end as usize],
         Err(_) => &[],

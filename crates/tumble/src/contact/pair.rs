@@ -54,8 +54,8 @@ impl Pair {
 
 /// Two particles, or a particle and a mesh or wall, in a neighbour list.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Point {
-    /// Slot of the particle.
+pub(super) struct ListedContact {
+    /// Slot of the particle: its place in the order of the particle tree.
     pub particle: u32,
     /// Slot of the particle of the other body; of a mesh, the index of the cached patch.
     pub other: u32,
@@ -64,14 +64,14 @@ pub(super) struct Point {
     pub clear_until: f64,
 }
 
-/// The size that stands for the radius of spheres, as a part of the extent of a body without spheres.
-const FEATURE_PART: f64 = 0.1;
+/// Feature size of a body without spheres, as a fraction of its extent.
+const FEATURE_FRACTION: f64 = 0.1;
 
 /// Size of the smallest features of a body that matter for contact (m).
 pub(super) fn feature_size(body: &BodyModel) -> f64 {
     match body.surface {
         Surface::Spheres { radius } => radius,
-        _ => FEATURE_PART * body.extent,
+        _ => FEATURE_FRACTION * body.extent,
     }
 }
 
@@ -105,7 +105,7 @@ pub(super) fn contact_kinds(first: &BodyModel, second: &BodyModel) -> &'static [
 /// The law of one kind of contact between two bodies.
 pub(super) fn contact_law(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> ContactLaw {
     let (a, b): (&PairMaterial, &PairMaterial) = (&first.pair_material, &second.pair_material);
-    // of two particles, the body with more of them shares its mass among them
+    // if both are particles, the body with more particles sharing its mass decides
     let is_swapped = kind == ContactKind::SphereSphere && b.share > a.share;
     if is_swapped || kind == ContactKind::MeshPoint { b.law(a) } else { a.law(b) }
 }

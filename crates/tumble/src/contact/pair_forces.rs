@@ -33,7 +33,7 @@ impl PairWrench {
 #[derive(Clone, Debug)]
 pub(super) struct PairForces {
     /// Index of the pair in the neighbour list.
-    pub pair: u32,
+    pub list_index: u32,
     /// The first body.
     pub first: u32,
     /// Springs and dashpots, normal and tangential.

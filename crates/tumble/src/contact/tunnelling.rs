@@ -1,6 +1,6 @@
 //! Bodies so fast that one could pass through another within a step.
 
-use super::pair::{Pair, Point};
+use super::pair::{ListedContact, Pair};
 use crate::{ContactKind, Model};
 
 /// Two bodies that could pass through each other within a step.
@@ -26,7 +26,7 @@ impl TunnellingRisk {
         model: &Model,
         index: usize,
         pair: &Pair,
-        point: &Point,
+        point: &ListedContact,
         displacement: f64,
     ) -> Self {
         let (body, other) = match pair.kind {

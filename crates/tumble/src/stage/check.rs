@@ -1,4 +1,4 @@
-//! The last stage of a step: is the new state one that physics could have produced?
+//! The last stage of a step: checks for finite numbers, penetration depth and displacement.
 
 use glam::DMat3;
 
@@ -22,8 +22,8 @@ pub fn check(batch: &mut Batch) {
     });
 }
 
-/// Reports what [`check`] found, or else two bodies that moved relative to each other, in one step, by more than half of the
-/// thickness of the thinner one.
+/// Reports what [`check`] found, or else two bodies whose relative displacement in one step exceeds the tunnelling limit of their
+/// contact: half of what the one would have to pass through.
 ///
 /// # Errors
 /// [`StepError`] names the step, time, body, particle, quantity and value, and a time step that would do.
@@ -42,7 +42,7 @@ pub fn report_failure(
             quantity,
             value,
             other: None,
-            // a quarter of the limit leaves a margin for the motion to go on
+            // a quarter of the limit, so that the run can continue with a margin
             dt: limit.map(|limit| 0.25 * model.dt * limit / value),
         });
     }

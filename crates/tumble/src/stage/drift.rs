@@ -40,20 +40,18 @@ pub(super) fn drift_body(model: &Model, body: &BodyModel, state: &mut BodyState,
     let Some(modes) = body.drag_modes.as_ref().filter(|_| c > 0.0) else {
         return uniform_drag_flight(model.gravity, body, state, h, c / body.particle_mass());
     };
-    let mut lost = 0.0;
-    for part in [0, 1, 2] {
-        if part == 1 {
-            uniform_drag_flight(DVec3::ZERO, body, state, h, 0.0);
-            continue;
-        }
+    let half_drag = |state: &mut BodyState| {
         let principal = DMat3::from_quat(state.orientation) * body.shape.principal().axes;
         let inward = principal.transpose();
         let (mut v, mut l) = (inward * state.velocity, inward * state.angular_momentum);
-        lost += modes.fall(&mut v, &mut l, inward * model.gravity, c, 0.5 * h);
+        let lost = modes.fall(&mut v, &mut l, inward * model.gravity, c, 0.5 * h);
         state.velocity = principal * v;
         state.angular_momentum = principal * l;
-    }
-    lost
+        lost
+    };
+    let lost = half_drag(state);
+    uniform_drag_flight(DVec3::ZERO, body, state, h, 0.0);
+    lost + half_drag(state)
 }
 
 /// Flight with one drag rate γ (1/s) for both momenta; returns the energy that drag takes (J).
@@ -70,14 +68,14 @@ fn uniform_drag_flight(
         state.velocity += gravity * h;
         return 0.0;
     }
-    let glide = LinearDrag::new(h, rate);
-    let spin_energy = rotate(body, state, glide.free_time());
+    let drag = LinearDrag::new(h, rate);
+    let spin_energy = rotate(body, state, drag.free_time());
     let lost =
-        body.mass * glide.loss(state.velocity, gravity) + spin_energy * glide.rotational_loss();
-    let (displacement, velocity) = glide.advance(state.velocity, gravity);
+        body.mass * drag.loss(state.velocity, gravity) + spin_energy * drag.rotational_loss();
+    let (displacement, velocity) = drag.advance(state.velocity, gravity);
     state.position += displacement;
     state.velocity = velocity;
-    state.angular_momentum *= glide.decay();
+    state.angular_momentum *= drag.decay();
     lost
 }
 

@@ -1,4 +1,4 @@
-//! Lines 5 to 7 of the basic system: explicit Euler steps of position, orientation and angular momentum.
+//! Lines 5 to 7 of the basic system: semi-implicit Euler for position, explicit Euler for orientation.
 
 use glam::{DMat3, DQuat, DVec3};
 

@@ -1,4 +1,4 @@
-//! The stages of a step, one file each. [`step`](crate::step) calls them in order.
+//! The stages of a step, one file per stage. [`step`](crate::step) calls them in order.
 //!
 //! A stage takes a [`Batch`](crate::Batch) of bodies. [`around_body_contact`] is the one place where bodies of different
 //! batches see each other.

@@ -18,10 +18,10 @@ use crate::contact::wall::{self, FrictionContacts, WallContactOutput, wall_conta
 use crate::kinematics::Kinematics;
 use crate::{Batch, BodyForces, BodyModel, BodyState, FrictionSpring, Model, RunTotals, Wrench};
 
-/// The shortest sub-step is 2^−FINEST of a step.
-const FINEST: u32 = 24;
-/// Sub-steps of at least 2^−COMPOSED of a step are composed to order six.
-const COMPOSED: u32 = 4;
+/// The shortest sub-step is 2^−MAX_HALVINGS of a step.
+const MAX_HALVINGS: u32 = 24;
+/// Sub-steps of at least 2^−MAX_COMPOSED_HALVINGS of a step are composed to order six.
+const MAX_COMPOSED_HALVINGS: u32 = 4;
 /// The impulse is scaled by at most this part of itself.
 const MAX_CORRECTION: f64 = 0.5;
 /// Lengths of the nine steps of the composition.
@@ -33,7 +33,7 @@ const W4: f64 = 0.082_213_596_293_550_8;
 const W5: f64 = 0.798_543_990_934_83;
 
 /// Advances every body that may touch a wall by one step, in sub-steps whose energy error is below `tolerance` times the
-/// kinetic and elastic energy.
+/// kinetic and elastic energy, or that have the shortest length.
 pub fn substep(batch: &mut Batch, tolerance: f64) {
     let Batch {
         model, first, bodies, springs, may_touch, forces, next_springs, workspaces, ..
@@ -96,7 +96,7 @@ impl BodyStepper<'_> {
         let mut start = self.energy();
         let energy_at_start = start.kinetic + start.elastic;
         // position within the step and length of the sub-step, in units of the shortest sub-step
-        let whole = 1u64 << FINEST;
+        let whole = 1u64 << MAX_HALVINGS;
         let (mut at, mut size) = (0, whole);
         while at < whole {
             let (before, impulse) = (*self.state, self.impulse);
@@ -140,10 +140,12 @@ impl BodyStepper<'_> {
     fn add_kinetic_energy(&mut self, energy: f64) -> bool {
         let Wrench { force: linear, torque: angular } = self.impulse;
         let rotation = DMat3::from_quat(self.state.orientation);
-        let spin = self.body.angular_velocity(rotation, angular);
+        let angular_velocity_change = self.body.angular_velocity(rotation, angular);
         // energy = ε (P·v + T·ω) + ε²/2 (P²/M + T·I⁻¹ T)
-        let slope = linear.dot(self.state.velocity) + spin.dot(self.state.angular_momentum);
-        let curvature = linear.length_squared() / self.body.mass + angular.dot(spin);
+        let slope = linear.dot(self.state.velocity)
+            + angular_velocity_change.dot(self.state.angular_momentum);
+        let curvature =
+            linear.length_squared() / self.body.mass + angular.dot(angular_velocity_change);
         let discriminant = slope * slope + 2.0 * curvature * energy;
         if discriminant <= 0.0 {
             return false;
@@ -159,11 +161,11 @@ impl BodyStepper<'_> {
 
     /// One sub-step of `size` units.
     fn sub_step(&mut self, size: u64) -> RunTotals {
-        let h = self.model.dt * (size as f64 / (1u64 << FINEST) as f64);
+        let h = self.model.dt * (size as f64 / (1u64 << MAX_HALVINGS) as f64);
         let is_weakly_damped =
             self.model.velocity_damping_stiffness / self.body.particle_mass() * h < 0.1;
         let is_elastic = self.body.contacts.iter().all(|law| law.is_elastic());
-        if !(is_elastic && is_weakly_damped && size >> (FINEST - COMPOSED) > 0) {
+        if !(is_elastic && is_weakly_damped && size >> (MAX_HALVINGS - MAX_COMPOSED_HALVINGS) > 0) {
             return self.drift_kick_drift(h);
         }
         let mut totals = RunTotals::default();

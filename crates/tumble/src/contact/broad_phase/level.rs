@@ -186,7 +186,7 @@ impl Level {
             let [x, y, z] = [0, 1, 2].map(|axis| self.axes[axis].local(cell[axis]));
             Entry { cell: self.row(y, z) + x as u64, index, active: ball.active }
         };
-        // counts go two places behind, so that after the prefix sum and the insertion each entry is a start
+        // counts are stored two places ahead, so that after the prefix sum and the insertion each entry is a start
         starts.clear();
         starts.resize((cell_count >> self.shift) as usize + 3, 0);
         for index in indices {

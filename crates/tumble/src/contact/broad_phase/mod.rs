@@ -25,7 +25,7 @@ use sizes::Sizes;
 const BRUTE_FORCE_COUNT: usize = 32;
 
 /// Number of balls of one level in a task; it does not depend on the number of threads.
-const CHUNK: usize = 256;
+const BALLS_PER_TASK: usize = 256;
 
 /// A ball around a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -89,13 +89,13 @@ impl Grid {
     fn divide(&mut self) {
         self.chunk_count = 0;
         for (level, balls) in self.levels[..self.level_count].iter().enumerate() {
-            for start in (0..balls.len()).step_by(CHUNK) {
+            for start in (0..balls.len()).step_by(BALLS_PER_TASK) {
                 if self.chunks.len() == self.chunk_count {
                     self.chunks.push(Chunk::default());
                 }
                 let chunk = &mut self.chunks[self.chunk_count];
                 chunk.level = level;
-                chunk.balls = start..balls.len().min(start + CHUNK);
+                chunk.balls = start..balls.len().min(start + BALLS_PER_TASK);
                 self.chunk_count += 1;
             }
         }

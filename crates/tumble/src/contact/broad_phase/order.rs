@@ -18,7 +18,7 @@ impl FoundPairs {
     }
 
     /// Adds the candidates that are hits, as pairs with ball `index`. Every candidate is written and only hits advance the end:
-    /// a branch would be mispredicted about once a partner, which costs more than all the rest.
+    /// a branch would be mispredicted about once per overlapping pair, which costs more than all the rest.
     #[inline(always)]
     pub(super) fn add_hits(
         &mut self,

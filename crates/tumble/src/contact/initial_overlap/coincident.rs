@@ -1,4 +1,4 @@
-//! Overlaps that contact would miss, or of which it would list too many.
+//! Overlaps that contact detection would miss, or whose neighbour lists would be too large.
 //!
 //! Contact sees particles and what they touch. Bodies at the same place may have no particle inside each other, and many such
 //! bodies have so many pairs that their lists would fill the memory. So these are found first.
@@ -8,17 +8,17 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
-use super::overlap::{INTENDED_DEPTH, MAX_NAMED, Overlap};
+use super::overlap::{MAX_INTENDED_DEPTH, MAX_NAMED, Overlap};
 use crate::contact::broad_phase::{Ball, Grid};
 use crate::contact::pair::{feature_size, thickness};
 use crate::{BodyModel, BodyState, Model, State, Surface};
 
-/// More bodies than this with their centres within one feature size cannot be meant.
+/// More bodies than this with their centres within one feature size is treated as a mistake.
 const MAX_CLUSTER: usize = 1000;
 
-fn is_deep(model: &Model, (first, second, depth): Overlap) -> bool {
+fn is_deep(model: &Model, Overlap { first, second, depth }: Overlap) -> bool {
     let size = |body: u32| feature_size(&model.bodies[body as usize]);
-    depth > INTENDED_DEPTH * size(first).min(size(second))
+    depth > MAX_INTENDED_DEPTH * size(first).min(size(second))
 }
 
 /// Bodies of one shape at exactly one position and orientation, each paired with the next of them; and neighbours within
@@ -44,8 +44,10 @@ pub(super) fn coincident_bodies(model: &Model, state: &State) -> Vec<Overlap> {
             && a.surface == b.surface
             && (a.is_free() || b.is_free())
     });
-    let overlap =
-        |pair: &[usize]| (pair[0] as u32, pair[1] as u32, thickness(&model.bodies[pair[0]]));
+    let overlap = |pair: &[usize]| {
+        let depth = thickness(&model.bodies[pair[0]]);
+        Overlap { first: pair[0] as u32, second: pair[1] as u32, depth }
+    };
     let mut overlaps: Vec<Overlap> = pairs.map(overlap).collect();
     for cluster in clusters(model, state) {
         overlaps.extend(cluster.windows(2).take(MAX_NAMED).map(overlap));
@@ -89,7 +91,10 @@ pub(super) fn containing_centres(model: &Model, state: &State) -> Vec<Overlap> {
     };
     let mut grid = Grid::default();
     let pairs = grid.pairs(&balls).iter();
-    let overlaps = pairs.map(|&[a, b]| (a, b, common_depth(a, b).max(common_depth(b, a))));
+    let overlaps = pairs.map(|&[a, b]| {
+        let depth = common_depth(a, b).max(common_depth(b, a));
+        Overlap { first: a, second: b, depth }
+    });
     overlaps.filter(|&overlap| is_deep(model, overlap)).take(MAX_NAMED).collect()
 }
 

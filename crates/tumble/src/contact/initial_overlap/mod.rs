@@ -5,7 +5,7 @@ mod overlap;
 
 use glam::DVec3;
 
-use self::overlap::{INTENDED_DEPTH, MAX_NAMED, Overlap};
+use self::overlap::{MAX_INTENDED_DEPTH, MAX_NAMED, Overlap};
 use super::body_contacts::BodyContacts;
 use super::pair::{Pair, feature_size};
 use super::wall;
@@ -14,7 +14,7 @@ use crate::{ContactKind, Model, State};
 
 /// Bodies are moved apart until their depth is below this part of their feature size.
 const SEPARATED_DEPTH: f64 = 1e-3;
-/// After so many iterations the bodies are taken to have no room.
+/// After this number of iterations the separation fails.
 const MAX_ITERATIONS: usize = 2000;
 
 /// Pairs of bodies that overlap by more than a tenth of the radius of their spheres, or a hundredth of the size of a body
@@ -28,8 +28,10 @@ pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<Overlap> {
         overlaps.extend(coincident::containing_centres(model, state));
         overlaps.extend(overlaps_by_contact(model, state));
     }
-    overlaps.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(b.2.total_cmp(&a.2)));
-    overlaps.dedup_by_key(|overlap| (overlap.0, overlap.1));
+    overlaps.sort_by(|a, b| {
+        (a.first, a.second).cmp(&(b.first, b.second)).then(b.depth.total_cmp(&a.depth))
+    });
+    overlaps.dedup_by_key(|overlap| (overlap.first, overlap.second));
     overlaps.truncate(MAX_NAMED);
     overlaps
 }
@@ -39,22 +41,22 @@ fn overlaps_by_contact(model: &Model, state: &State) -> Vec<Overlap> {
     let mut overlaps: Vec<Overlap> = Vec::new();
     BodyContacts::default().for_each_contact(model, state, |pair, _, depth| {
         if pair.kind == ContactKind::SphereWall
-            || depth <= INTENDED_DEPTH * min_feature_size(model, pair)
+            || depth <= MAX_INTENDED_DEPTH * min_feature_size(model, pair)
         {
             return;
         }
         match overlaps.last_mut() {
-            Some(last) if (last.0, last.1) == (pair.first, pair.second) => {
-                last.2 = last.2.max(depth)
+            Some(last) if (last.first, last.second) == (pair.first, pair.second) => {
+                last.depth = last.depth.max(depth)
             }
-            _ => overlaps.push((pair.first, pair.second, depth)),
+            _ => overlaps.push(Overlap { first: pair.first, second: pair.second, depth }),
         }
     });
     overlaps
 }
 
-/// Moves apart bodies that overlap each other or walls, lighter ones farther, without rotating them. Returns whether all came
-/// free.
+/// Moves apart bodies that overlap each other or walls, lighter ones farther, without rotating them. Returns whether all
+/// overlaps were resolved.
 ///
 /// In each iteration a body moves by the mean of the corrections of its contacts: a Jacobi iteration of position-based dynamics
 /// (M. Müller et al., J. Vis. Commun. Image R. 18 (2007) 109).
@@ -67,14 +69,14 @@ pub(crate) fn separate(model: &Model, state: &mut State) -> bool {
     let mut corrections = vec![Corrections::default(); model.bodies.len()];
     for _ in 0..MAX_ITERATIONS {
         corrections.fill(Corrections::default());
-        let mut is_free = true;
+        let mut is_separated = true;
         contacts.for_each_contact(model, state, |pair, normal, depth| {
             let (a, b) = (pair.first as usize, pair.second as usize);
             let inverse_mass = |body: usize| model.bodies[body].pair_material.inverse_mass;
             let of_second =
                 if pair.kind == ContactKind::SphereWall { 0.0 } else { inverse_mass(b) };
             let sum = inverse_mass(a) + of_second;
-            is_free &= depth <= SEPARATED_DEPTH * min_feature_size(model, pair);
+            is_separated &= depth <= SEPARATED_DEPTH * min_feature_size(model, pair);
             corrections[a].add(normal * (depth * inverse_mass(a) / sum));
             if of_second > 0.0 {
                 corrections[b].add(normal * (-depth * of_second / sum));
@@ -86,7 +88,7 @@ pub(crate) fn separate(model: &Model, state: &mut State) -> bool {
             for wall in model.walls.iter().filter(|_| has_wall_particles) {
                 let depth = wall::depth_behind(&Kinematics::new(body, body_state), wall);
                 if depth > 0.0 {
-                    is_free &= depth <= SEPARATED_DEPTH * feature_size(body);
+                    is_separated &= depth <= SEPARATED_DEPTH * feature_size(body);
                     correction.add(wall.normal * depth);
                 }
             }
@@ -94,7 +96,7 @@ pub(crate) fn separate(model: &Model, state: &mut State) -> bool {
                 body_state.position += correction.sum / correction.count;
             }
         }
-        if is_free {
+        if is_separated {
             return true;
         }
     }

@@ -1,15 +1,14 @@
 //! Coulomb friction: a tangential spring and dashpot, together at most μ times the normal force.
 //!
-//! The spring has priority. Wall contacts and contacts between bodies cut it to the limit where they store its stretch; the
-//! dashpot then gets what is left.
+//! The spring force is limited to μ F_n first, where its stretch is stored. The dashpot may use what remains of the limit.
 
 use fearless_simd::{Simd, f64x8, prelude::*};
 
 use crate::lanes::{Vec3x8, positive};
 
-/// The largest β in [0, 1] with |spring + β dashpot| ≤ limit: the part of the tangential dashpot that the limit μ F_n allows.
+/// The largest β in [0, 1] with |spring + β dashpot| ≤ limit: the fraction of the tangential dashpot that the limit μ F_n allows.
 #[inline(always)]
-pub(in crate::contact) fn dashpot_part<S: Simd>(
+pub(in crate::contact) fn dashpot_fraction<S: Simd>(
     simd: S,
     spring: Vec3x8<S>,
     dashpot: Vec3x8<S>,

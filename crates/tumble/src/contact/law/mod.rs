@@ -1,9 +1,19 @@
 //! Contact laws: the force of a contact as a function of penetration depth and velocity, eight contacts at a time.
 //!
-//! One file a law. Contacts with walls ([`wall`](super::wall)) and between bodies ([`forces`](super::forces)) evaluate the same
-//! code. To add a law for the normal force (Hertz, say): implement [`NormalLaw`] in a new file here, and choose it where
-//! [`ContactLanes::normal_law`](super::contact_lanes::ContactLanes::normal_law) and the wall contacts build theirs. Its parameters come from
-//! [`ContactLaw`](crate::ContactLaw), which [`Material`](crate::Material) fills.
+//! One file per law. Contacts between bodies ([`forces`](super::forces)) and wall contacts with friction
+//! ([`wall`](super::wall)) evaluate the same code. Wall contacts without friction are sums over the particle tree, which need a force that is
+//! linear in depth.
+//!
+//! # How to add a law for the normal force (Hertz)
+//!
+//! 1. Implement [`NormalLaw`] in a new file here.
+//! 2. Parameters: `ContactLaw` and `Material` in `material.rs`, `PairMaterial` in `pair_material.rs` (with the effective radius, if the law has
+//!    one), and the keys in `crates/tumble-io/src/scene`.
+//! 3. Between bodies: choose the law in `ContactLanes::normal_law` (`contact_lanes.rs`) from parameters that `PairPoses::write_law`
+//!    (`narrow_phase/pair_poses.rs`) writes into the lanes; its energy in `ContactLanes::elastic_energy`.
+//! 4. At walls: choose it in `WallEvaluation::add_lanes` (`wall/friction.rs`), and send every contact with a nonlinear law there instead of to
+//!    `wall/frictionless.rs`; its energy in `wall::elastic_energy`.
+//! 5. The critical step in `stability.rs`, and the damping that gives a restitution in `material.rs`.
 
 pub(in crate::contact) mod coulomb;
 pub(in crate::contact) mod linear;

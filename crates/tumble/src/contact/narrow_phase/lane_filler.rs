@@ -8,7 +8,7 @@ use crate::contact::chunk_contacts::{Candidate, ChunkContacts};
 use crate::contact::contact_lanes::ContactLanes;
 use crate::contact::context::ContactContext;
 use crate::contact::friction_history::FrictionHistory;
-use crate::contact::pair::{Pair, Point};
+use crate::contact::pair::{ListedContact, Pair};
 use crate::contact::pair_forces::{PairForces, PairLosses, PairWrench};
 use crate::contact::tunnelling::TunnellingRisk;
 use crate::lanes::LANES;
@@ -40,7 +40,11 @@ impl<'a> LaneFiller<'a> {
     #[inline(always)]
     pub fn begin_pair<const PREDICT: bool>(&mut self, index: usize, pair: &Pair) -> u32 {
         let wrench = PairWrench::default();
-        self.contacts.pairs.push(PairForces { pair: index as u32, first: pair.first, wrench });
+        self.contacts.pairs.push(PairForces {
+            list_index: index as u32,
+            first: pair.first,
+            wrench,
+        });
         if !PREDICT {
             self.contacts.losses.push(PairLosses::default());
         }
@@ -55,7 +59,7 @@ impl<'a> LaneFiller<'a> {
         pair: &Pair,
         candidate: Candidate,
         geometry: PointGeometry,
-        point: &Point,
+        point: &ListedContact,
     ) -> bool {
         let lane = self.count;
         let ChunkContacts { lanes, lanes_used, input, .. } = &mut *self.contacts;
@@ -84,7 +88,7 @@ impl<'a> LaneFiller<'a> {
         &mut self,
         simd: S,
         pairs: &mut [Pair],
-        points: &mut [Point],
+        points: &mut [ListedContact],
     ) {
         let count = std::mem::take(&mut self.count);
         if count == 0 {
@@ -114,11 +118,11 @@ impl<'a> LaneFiller<'a> {
 
     /// Writes the gap of a lane back to the neighbour list, and finds the spring that its contact had.
     #[inline(always)]
-    fn finish_lane(&mut self, lane: usize, pairs: &mut [Pair], points: &mut [Point]) {
+    fn finish_lane(&mut self, lane: usize, pairs: &mut [Pair], points: &mut [ListedContact]) {
         let ChunkContacts { lanes, lanes_used, pairs: forces, pair_index, input, .. } =
             &mut *self.contacts;
         let lanes = &mut lanes[*lanes_used];
-        let index = forces[lanes.pair[lane] as usize].pair as usize;
+        let index = forces[lanes.pair[lane] as usize].list_index as usize;
         let (pair, point) = (&mut pairs[index], &mut points[lanes.point[lane] as usize]);
         let (path, step_displacement) = (self.path[lane], self.step_displacement[lane]);
         input.has_spring[lane] = 0.0;

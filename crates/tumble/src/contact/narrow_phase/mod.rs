@@ -1,4 +1,4 @@
-//! Narrow phase: which of the listed points touch. One file a kind of pair.
+//! Narrow phase: which of the listed points touch. One file per kind of pair.
 //!
 //! Points that may touch are collected in the order of the lists and put into lanes of eight ([`lane_filler`]), whatever the
 //! kinds of their pairs. Full lanes go through geometry, friction and forces at once, while their data is in the cache. Forces
@@ -19,7 +19,7 @@ use super::chunk_contacts::{Candidate, ChunkContacts};
 use super::context::ContactContext;
 use super::friction_history::FrictionHistory;
 use super::neighbour_list::ChunkNeighbours;
-use super::pair::{Pair, Point};
+use super::pair::{ListedContact, Pair};
 use crate::ContactKind;
 
 /// Finds the contacts of the chunk whose first body is `first_body`, and computes their forces. With `PREDICT` the forces serve
@@ -44,7 +44,7 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
             continue;
         }
         if pair.is_point_mesh() {
-            // friction springs are matched in the order of pairs, so the candidates before come first
+            // friction springs are matched in the order of pairs, so earlier candidates are examined first
             examine_candidates::<S, PREDICT>(simd, &mut filler, pairs, points);
             let neighbours = Neighbours { pairs, points, mesh_cache };
             let clear_until =
@@ -52,9 +52,9 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
             pairs[index].clear_until = clear_until;
             continue;
         }
-        let in_contacts = filler.begin_pair::<PREDICT>(index, pair);
+        let contact_pair = filler.begin_pair::<PREDICT>(index, pair);
         let candidates = &mut filler.contacts.candidates;
-        pairs[index].clear_until = add_candidates(candidates, in_contacts, pair, &poses, points);
+        pairs[index].clear_until = add_candidates(candidates, contact_pair, pair, &poses, points);
     }
     examine_candidates::<S, PREDICT>(simd, &mut filler, pairs, points);
     filler.flush::<S, PREDICT>(simd, pairs, points);
@@ -63,15 +63,15 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
     contacts.released = released;
 }
 
-/// Adds the points of a pair of spheres, or of spheres and a wall, that may touch; returns until when the others are clear (m of path
-/// lengths). There is no branch for each point, since it could not be predicted.
+/// Adds the points of a pair of spheres, or of spheres and a wall, that may touch; returns the smallest path length at
+/// which one of the others could touch (m). There is no branch for each point, since it could not be predicted.
 #[inline(always)]
 fn add_candidates(
     candidates: &mut Vec<Candidate>,
-    in_contacts: u32,
+    contact_pair: u32,
     pair: &Pair,
     poses: &PairPoses,
-    points: &[Point],
+    points: &[ListedContact],
 ) -> f64 {
     let mut count = candidates.len();
     let range = pair.start as usize..pair.end as usize;
@@ -80,7 +80,7 @@ fn add_candidates(
     for (index, point) in (pair.start..).zip(&points[range]) {
         let is_clear = poses.path < point.clear_until
             && !poses.may_tunnel(pair, poses.path, point.clear_until);
-        candidates[count] = Candidate { pair: in_contacts, point: index };
+        candidates[count] = Candidate { pair: contact_pair, point: index };
         count += usize::from(!is_clear);
         clear_until = clear_until.min(if is_clear { point.clear_until } else { f64::INFINITY });
     }
@@ -94,11 +94,11 @@ fn examine_candidates<S: Simd, const PREDICT: bool>(
     simd: S,
     filler: &mut LaneFiller,
     pairs: &mut [Pair],
-    points: &mut [Point],
+    points: &mut [ListedContact],
 ) {
     let mut candidates = std::mem::take(&mut filler.contacts.candidates);
     for &candidate in &candidates {
-        let index = filler.contacts.pairs[candidate.pair as usize].pair as usize;
+        let index = filler.contacts.pairs[candidate.pair as usize].list_index as usize;
         let (pair, point) = (&pairs[index], &points[candidate.point as usize]);
         let poses = PairPoses::new(filler.context, pair);
         let geometry = if pair.kind == ContactKind::SphereWall {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::contact::contact_lanes::{ContactLanes, LaneInput};
 use crate::contact::context::ContactContext;
-use crate::contact::pair::{Pair, Point};
+use crate::contact::pair::{ListedContact, Pair};
 use crate::contact::pose::{BodyPose, pose_or_wall};
 use crate::lanes::set;
 use crate::{ContactKind, Model, Particles};
@@ -15,9 +15,9 @@ pub(super) struct PointGeometry {
     /// Position of the particle (m).
     pub position: DVec3,
     /// Vector from the second sphere to the first (m); for a wall or mesh, n.
-    pub separation: DVec3,
+    pub separation_or_normal: DVec3,
     /// Distance at which the spheres touch (m); for a wall or mesh, the depth (m).
-    pub contact_distance: f64,
+    pub contact_distance_or_depth: f64,
 }
 
 /// The poses of the two bodies of a pair.
@@ -69,18 +69,24 @@ impl<'a> PairPoses<'a> {
     pub fn write_input(&self, geometry: PointGeometry, lane: usize, input: &mut LaneInput) {
         let (first, second) = (self.first, self.second);
         set(&mut input.particle_position, lane, geometry.position);
-        set(&mut input.separation, lane, geometry.separation);
-        input.contact_distance[lane] = geometry.contact_distance;
+        set(&mut input.separation_or_normal, lane, geometry.separation_or_normal);
+        input.contact_distance_or_depth[lane] = geometry.contact_distance_or_depth;
         set(&mut input.position, lane, first.position);
         set(&mut input.other_position, lane, second.position);
         set(&mut input.drift_velocity, lane, first.drift_velocity - second.drift_velocity);
-        set(&mut input.drift_spin, lane, first.drift_angular_velocity);
-        set(&mut input.other_drift_spin, lane, second.drift_angular_velocity);
+        set(&mut input.drift_angular_velocity, lane, first.drift_angular_velocity);
+        set(&mut input.other_drift_angular_velocity, lane, second.drift_angular_velocity);
     }
 
     /// Writes bodies, particles and the parameters of the law into a lane.
     #[inline(always)]
-    pub fn write_law(&self, pair: &Pair, point: &Point, lane: usize, lanes: &mut ContactLanes) {
+    pub fn write_law(
+        &self,
+        pair: &Pair,
+        point: &ListedContact,
+        lane: usize,
+        lanes: &mut ContactLanes,
+    ) {
         let index = |body: u32, slot| self.particles(body).index_of_slot(slot);
         let Pair { first, second, kind, law, .. } = pair;
         let (particle, other) = match kind {

@@ -7,7 +7,7 @@ use super::lane_filler::LaneFiller;
 use super::pair_poses::{PairPoses, PointGeometry};
 use crate::contact::chunk_contacts::Candidate;
 use crate::contact::mesh_cache::{BLOCK, MeshCache, RelativePose};
-use crate::contact::pair::{Pair, Point};
+use crate::contact::pair::{ListedContact, Pair};
 use crate::contact::pose::BodyPose;
 use crate::contact::tunnelling::TunnellingRisk;
 use crate::{BodyModel, ContactKind, SignedDistance};
@@ -15,12 +15,12 @@ use crate::{BodyModel, ContactKind, SignedDistance};
 /// The neighbour list of a chunk.
 pub(super) struct Neighbours<'a> {
     pub pairs: &'a mut [Pair],
-    pub points: &'a mut [Point],
+    pub points: &'a mut [ListedContact],
     pub mesh_cache: &'a mut MeshCache,
 }
 
-/// Finds the particles of the pair with index `index` that touch the mesh; returns until when the pair is clear (m of path
-/// lengths).
+/// Finds the particles of the pair with index `index` that touch the mesh; returns up to which sum of path lengths
+/// there is no contact (m).
 #[inline(always)]
 pub(super) fn detect<S: Simd, const PREDICT: bool>(
     simd: S,
@@ -38,7 +38,7 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
     if path < until && !is_fast {
         return poses.path + (until - path);
     }
-    let in_contacts = filler.begin_pair::<PREDICT>(index, pair);
+    let contact_pair = filler.begin_pair::<PREDICT>(index, pair);
     let margin =
         if is_fast { pair.search_margin.max(poses.step_displacement) } else { pair.search_margin };
     let mut query =
@@ -55,7 +55,7 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
                     match query.geometry(point) {
                         Ok(geometry) => {
                             point.clear_until = 0.0;
-                            let candidate = Candidate { pair: in_contacts, point: point_index };
+                            let candidate = Candidate { pair: contact_pair, point: point_index };
                             is_full = filler.push(poses, pair, candidate, geometry, point);
                         }
                         Err(gap) => point.clear_until = path + gap,
@@ -103,16 +103,20 @@ struct MeshQuery<'a> {
 impl MeshQuery<'_> {
     /// The geometry of a particle that touches the mesh; otherwise a lower bound on its gap (m).
     #[inline(always)]
-    fn geometry(&mut self, point: &mut Point) -> Result<PointGeometry, f64> {
+    fn geometry(&mut self, point: &mut ListedContact) -> Result<PointGeometry, f64> {
         let (position, outward, depth) = self.contact(point)?;
         // n is from the second body to the first
         let is_first = self.pair.kind == ContactKind::PointMesh;
-        let separation = if is_first { outward } else { -outward };
-        Ok(PointGeometry { position, separation, contact_distance: depth })
+        let normal = if is_first { outward } else { -outward };
+        Ok(PointGeometry {
+            position,
+            separation_or_normal: normal,
+            contact_distance_or_depth: depth,
+        })
     }
 
     /// Position of the particle, outward normal of the mesh and depth (m) of a contact; otherwise a lower bound on the gap (m).
-    fn contact(&mut self, point: &mut Point) -> Result<(DVec3, DVec3, f64), f64> {
+    fn contact(&mut self, point: &mut ListedContact) -> Result<(DVec3, DVec3, f64), f64> {
         let (pair, (body, pose), (mesh_body, mesh_pose)) = (self.pair, self.particles, self.mesh);
         let Some(signed_distance) = &mesh_body.signed_distance else { return Err(self.margin) };
         let position = pose.particle_position(body, point.particle);
@@ -139,7 +143,7 @@ impl MeshQuery<'_> {
     fn cheap_gap(
         &self,
         signed_distance: &SignedDistance,
-        point: &Point,
+        point: &ListedContact,
         local: DVec3,
     ) -> Option<f64> {
         let contact_distance = self.pair.contact_distance;

@@ -1,17 +1,17 @@
 //! Spheres of a body and a wall.
 
 use super::pair_poses::{PairPoses, PointGeometry};
-use crate::contact::pair::{Pair, Point};
+use crate::contact::pair::{ListedContact, Pair};
 
 /// Geometry of a sphere and a wall {n·x = d}: the depth is r + d − n·x, along n.
 #[inline(always)]
-pub(super) fn geometry(poses: &PairPoses, pair: &Pair, point: &Point) -> PointGeometry {
+pub(super) fn geometry(poses: &PairPoses, pair: &Pair, point: &ListedContact) -> PointGeometry {
     let PairPoses { model, first, .. } = poses;
     let position = first.particle_position(&model.bodies[pair.first as usize], point.particle);
     let wall = &model.walls[pair.second as usize];
     PointGeometry {
         position,
-        separation: wall.normal,
-        contact_distance: pair.contact_distance + wall.depth(position),
+        separation_or_normal: wall.normal,
+        contact_distance_or_depth: pair.contact_distance + wall.depth(position),
     }
 }

@@ -10,7 +10,7 @@ use fearless_simd::{Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::near_wall::NearWall;
-use crate::contact::law::coulomb::dashpot_part;
+use crate::contact::law::coulomb::dashpot_fraction;
 use crate::contact::law::linear::LinearSpringDashpot;
 use crate::contact::law::{NormalForce, NormalLaw};
 use crate::kinematics::Kinematics;
@@ -30,7 +30,7 @@ pub(crate) struct FrictionContacts {
     slip_loss: f64,
 }
 
-/// Up to eight contacts with one wall, one a lane. Lanes without a contact have depth zero.
+/// Up to eight contacts with one wall, one per lane. Lanes without a contact have depth zero.
 #[derive(Clone, Debug, Default)]
 struct WallContactLanes {
     wall: u32,
@@ -46,7 +46,7 @@ struct WallContactLanes {
     old_stretch: Columns,
     /// Stretch that the friction limit allows (m).
     stretch: Columns,
-    /// Whether the contact slips, a bit a lane.
+    /// Whether the contact slips, one bit per lane.
     slips: u64,
 }
 
@@ -320,7 +320,7 @@ impl WallEvaluation<'_> {
         sums.normal_arm += arm * weighted_normal;
         sums.max_depth = sums.max_depth.simd_gt(depth).select(sums.max_depth, depth);
 
-        // tangential spring to the anchor, cut to the friction limit
+        // tangential spring to the anchor, limited to the friction limit
         let limit = normal * law.friction;
         let position = Vec3x8::splat(simd, kinematics.position) + arm;
         let stretch = (position - Vec3x8::load(simd, &lanes.anchor)).perpendicular_to(n);
@@ -339,7 +339,8 @@ impl WallEvaluation<'_> {
 
         // tangential dashpot, within what the spring leaves of the limit
         let dashpot = u.perpendicular_to(n) * f64x8::splat(simd, -law.friction_damping);
-        let dashpot = weights.scale_vector(dashpot * dashpot_part(simd, friction, dashpot, limit));
+        let dashpot =
+            weights.scale_vector(dashpot * dashpot_fraction(simd, friction, dashpot, limit));
         sums.dashpot += dashpot;
         sums.dashpot_torque += arm.cross(dashpot);
     }
