@@ -214,7 +214,7 @@ fn files_that_are_not_scenes_are_rejected() {
     );
     assert_contains(
         &dir.tumble(&["run", "/dev/zero"]).expect_status(2).stderr,
-        &["no ordinary file"],
+        &["not a regular file"],
     );
     assert_contains(&dir.rejected("", &[]), &["the scene has no body", "shape = \"sphere\""]);
     assert_contains(&dir.rejected(b"dt = 1\xff", &[]), &["s.toml is no scene", "byte 6"]);

@@ -34,7 +34,7 @@ const HEAD: usize = 12 + 4 + 8;
 /// Bytes after the last section.
 const SUM: usize = 32;
 /// A file larger than this is something else.
-const MOST_BYTES: u64 = 4 << 30;
+const MAX_BYTES: u64 = 4 << 30;
 
 /// All that a run needs to go on.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +79,7 @@ impl std::fmt::Display for CheckpointError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Read(error) => write!(f, "cannot be read: {error}"),
-            Self::NoFile => write!(f, "is no ordinary file of at most {} GiB", MOST_BYTES >> 30),
+            Self::NoFile => write!(f, "is no ordinary file of at most {} GiB", MAX_BYTES >> 30),
             Self::Empty => write!(f, "is empty"),
             Self::Foreign => write!(f, "is no checkpoint: it begins with other bytes"),
             Self::Short { found } => {
@@ -142,13 +142,13 @@ pub(crate) fn encode(
 /// [`CheckpointError`].
 pub fn read_checkpoint(path: &Path) -> Result<Checkpoint, CheckpointError> {
     let metadata = std::fs::metadata(path).map_err(CheckpointError::Read)?;
-    if !metadata.is_file() || metadata.len() > MOST_BYTES {
+    if !metadata.is_file() || metadata.len() > MAX_BYTES {
         return Err(CheckpointError::NoFile);
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(CheckpointError::Read)?;
     // a file that grows meanwhile is not read for ever
-    file.take(MOST_BYTES).read_to_end(&mut bytes).map_err(CheckpointError::Read)?;
+    file.take(MAX_BYTES).read_to_end(&mut bytes).map_err(CheckpointError::Read)?;
     parse_checkpoint(&bytes)
 }
 

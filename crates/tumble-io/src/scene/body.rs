@@ -18,7 +18,7 @@ pub const MASS_KEYS: [&str; 3] = ["particle_mass", "mass", "density"];
 const LONGEST_NAME: usize = 200;
 
 /// More bodies than this are a slip of the keyboard.
-pub const MOST_COPIES: u64 = 1_000_000;
+pub const MAX_COPIES: u64 = 1_000_000;
 
 /// Reads body number `index`; defaults take the place of what cannot be made sense of.
 pub fn body(reader: Reader, index: usize) -> BodyScene {
@@ -75,14 +75,14 @@ fn geometry(reader: &Reader) -> Option<Geometry> {
             let shape = shape_scene(reader).map(Geometry::Shape);
             // of an unknown shape, nobody knows the keys
             if shape.is_none() {
-                reader.know(&SHAPE_KEYS);
+                reader.mark_known(&SHAPE_KEYS);
             }
             shape
         }
         Some(_) => reader.points("particles").map(Geometry::Particles),
         None => {
-            reader.know(&SHAPE_KEYS);
-            reader.know(&["weld", "mesh_sha256"]);
+            reader.mark_known(&SHAPE_KEYS);
+            reader.mark_known(&["weld", "mesh_sha256"]);
             reader.problem("", "needs one of `mesh = \"FILE\"`, `shape = \"NAME\"` or `particles = [[x, y, z], …]`");
             None
         }
@@ -135,11 +135,11 @@ fn copies(reader: Reader) -> Option<Copies> {
     let count = count.filter(|count| {
         let whole = count.iter().all(|n| n.fract() == 0.0);
         let total: f64 = count.iter().product();
-        if !whole || total > MOST_COPIES as f64 {
-            let message = format!("must hold whole numbers whose product is at most {MOST_COPIES}");
+        if !whole || total > MAX_COPIES as f64 {
+            let message = format!("must hold whole numbers whose product is at most {MAX_COPIES}");
             reader.problem("count", message);
         }
-        whole && total <= MOST_COPIES as f64
+        whole && total <= MAX_COPIES as f64
     });
     reader.finish();
     Some(Copies { count: count?.map(|n| n as u32), spacing: spacing?, seed })

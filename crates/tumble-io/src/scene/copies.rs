@@ -5,12 +5,12 @@ use tumble::{DQuat, DVec3};
 use super::description::Copies;
 
 impl Copies {
-    /// How many bodies there are.
+    /// Number of bodies.
     pub fn total(&self) -> u64 {
         self.count.iter().map(|&n| u64::from(n)).product()
     }
 
-    /// Place relative to the body's own (m), and orientation on top of its own, of every copy.
+    /// Position (m) and orientation of every copy relative to those of the body.
     pub fn poses(&self) -> Vec<(DVec3, DQuat)> {
         let middle = DVec3::from_array(self.count.map(|n| 0.5 * (f64::from(n) - 1.0)));
         let mut random = self.seed.map(SplitMix64);
@@ -32,7 +32,7 @@ impl Copies {
 struct SplitMix64(u64);
 
 impl SplitMix64 {
-    /// Evenly from [0, 1).
+    /// A uniform number in [0, 1).
     fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -41,7 +41,7 @@ impl SplitMix64 {
         ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Evenly from all rotations: Shoemake, *Uniform random rotations*, Graphics Gems III, 1992.
+    /// A uniformly distributed rotation: Shoemake, *Uniform random rotations*, Graphics Gems III, 1992.
     fn rotation(&mut self) -> DQuat {
         let (u, a, b) = (self.unit(), self.unit(), self.unit());
         let (sin_a, cos_a) = libm::sincos(std::f64::consts::TAU * a);

@@ -1,4 +1,4 @@
-//! From a file, or a built-in scene, to a world that is ready to run.
+//! Loads a scene file or a built-in scene and builds its world.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,37 +9,37 @@ use tumble::{Body, BodyView, BuildError, DQuat, DVec3, World, WorldBuilder};
 use super::body::MASS_KEYS;
 use super::builtin::builtin;
 use super::description::{BodyScene, Geometry, Scene};
-use super::geometry::{self, Made};
+use super::geometry::{self, ShapeAndMass};
 use super::place::{Place, Source};
 use super::problem::{Problem, SceneError};
 use super::tree::{self, Node};
 use super::{read, reader::Reader};
 
-/// A scene file larger than this is something else.
-const MOST_BYTES: u64 = 256 << 20;
+/// The largest size of a scene file.
+const MAX_BYTES: u64 = 256 << 20;
 
 /// A scene and the world it describes.
 #[derive(Debug)]
 pub struct Loaded {
-    /// What was read, every default filled in.
+    /// The scene, with all defaults filled in.
     pub scene: Scene,
     /// The world at t = 0.
     pub world: World,
 }
 
-/// What a caller lays over a scene.
+/// Changes to a scene by the caller.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
-    /// Assignments `KEY=VALUE` laid over the scene's own, in order.
+    /// Assignments `KEY=VALUE` that override those of the scene, in order.
     pub sets: Vec<String>,
-    /// Accept a step above the critical one.
+    /// Accept a time step above the critical one.
     pub force: bool,
 }
 
-/// Reads the scene file at `path`, with `options` laid over it.
+/// Reads the scene file at `path` and applies `options`.
 ///
 /// # Errors
-/// [`SceneError`] holds everything that is wrong.
+/// [`SceneError`] holds all problems.
 pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
     let file = path.display().to_string();
     let text = read_text(path).map_err(|message| {
@@ -51,10 +51,10 @@ pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneErro
     load_text(&name, Source { name: file, text }, folder, options)
 }
 
-/// Reads the built-in scene `name`; `None` if there is none of that name.
+/// Reads the built-in scene `name`; `None` if it does not exist.
 ///
 /// # Errors
-/// [`SceneError`] holds everything that is wrong, which can only be in the options.
+/// [`SceneError`] holds all problems, which can only be in the options.
 pub fn load_builtin(name: &str, options: &LoadOptions) -> Option<Result<Loaded, SceneError>> {
     let scene = builtin(name)?;
     let source = Source { name: format!("{name} (built in)"), text: scene.text.to_owned() };
@@ -69,10 +69,10 @@ fn read_text(path: &Path) -> Result<String, String> {
         return Err(format!("{shown} is a folder; name the scene file in it"));
     }
     if !metadata.is_file() {
-        return Err(format!("{shown} is no ordinary file; save the scene to one first"));
+        return Err(format!("{shown} is not a regular file; save the scene to one first"));
     }
-    if metadata.len() > MOST_BYTES {
-        let most = MOST_BYTES >> 20;
+    if metadata.len() > MAX_BYTES {
+        let most = MAX_BYTES >> 20;
         return Err(format!(
             "{shown} is larger than {most} MiB: no scene; put particles into a mesh file"
         ));
@@ -83,17 +83,17 @@ fn read_text(path: &Path) -> Result<String, String> {
         let at = error.utf8_error().valid_up_to();
         format!("{shown} is no scene: a scene is TOML text in UTF-8, and byte {at} is not")
     })?;
-    // the byte order mark of some editors would count as a column
+    // the byte order mark that some editors write would count as a column
     if text.starts_with('\u{feff}') {
         text.remove(0);
     }
     Ok(text)
 }
 
-/// Reads a scene from text. `folder` is where relative mesh paths start.
+/// Reads a scene from text. Relative mesh paths start at `folder`.
 ///
 /// # Errors
-/// [`SceneError`] holds everything that is wrong.
+/// [`SceneError`] holds all problems.
 pub fn load_text(
     name: &str,
     source: Source,
@@ -102,22 +102,21 @@ pub fn load_text(
 ) -> Result<Loaded, SceneError> {
     let (mut root, syntax) = tree::parse(&source.text, 0);
     let mut sources = vec![source];
-    // after a syntax error the rest of the tree is guesswork
+    // after a syntax error the rest of the tree is unreliable
     if !syntax.is_empty() {
         return Err(SceneError::new(sources, syntax));
     }
     let problems = RefCell::new(Vec::new());
     for assignment in &options.sets {
         let index = sources.len();
-        let told = Source { name: "--set".to_owned(), text: assignment.clone() };
-        sources.push(told);
+        sources.push(Source { name: "--set".to_owned(), text: assignment.clone() });
         if let Err(problem) = tree::set(&mut root, assignment, index) {
             problems.borrow_mut().push(problem);
         }
     }
-    let (mut scene, sound) = read::scene(&root, name.to_owned(), &problems);
+    let (mut scene, is_valid) = read::scene(&root, name.to_owned(), &problems);
     scene.force = options.force;
-    let world = world(&mut scene, &sound, &root, folder, &problems);
+    let world = world(&mut scene, &is_valid, &root, folder, &problems);
     let problems = problems.into_inner();
     match world {
         Some(world) if problems.is_empty() => Ok(Loaded { scene, world }),
@@ -125,20 +124,20 @@ pub fn load_text(
     }
 }
 
-/// Builds the world; `None` with at least one problem reported, now or before. Meshes are read in
-/// either case, so that what is wrong with them is told along with everything else.
+/// Builds the world; `None` if there is a problem, now or before. Meshes are read in either case, so that their problems are reported
+/// together with all others. `is_valid` tells which bodies were read without a problem.
 fn world(
     scene: &mut Scene,
-    sound: &[bool],
+    is_valid: &[bool],
     root: &Node,
     folder: &Path,
     problems: &RefCell<Vec<Problem>>,
 ) -> Option<World> {
-    // what is wrong with these tables was told when the scene was read
-    let told = RefCell::default();
-    let top = Reader::new(root, String::new(), &told);
+    // problems of these tables were reported when the scene was read
+    let already_reported = RefCell::default();
+    let top = Reader::new(root, String::new(), &already_reported);
     let readers = top.tables("body");
-    let blame = |index: Option<usize>, key: &str, message: String| {
+    let report = |index: Option<usize>, key: &str, message: String| {
         let reader = index.and_then(|index| readers.get(index)).unwrap_or(&top);
         problems.borrow_mut().push(Problem::new(reader.place_of(key), reader.key(key), message));
     };
@@ -154,31 +153,31 @@ fn world(
     for (wall, material) in scene.all_walls() {
         builder = builder.wall_with_material(wall, material);
     }
-    // bodies that look alike share one shape
-    let mut made: BTreeMap<String, (Made, Geometry)> = BTreeMap::new();
+    // bodies with equal geometry share one shape
+    let mut shapes: BTreeMap<String, (ShapeAndMass, Geometry)> = BTreeMap::new();
     for (index, body) in scene.bodies.iter_mut().enumerate() {
-        // of a body that is not to be built, only the file can be judged
-        if !sound[index] {
+        // an invalid body is not built, but its mesh file is checked
+        if !is_valid[index] {
             if matches!(body.geometry, Geometry::Mesh { .. })
-                && let Err(error) = geometry::points_of(&mut body.geometry, folder)
+                && let Err(error) = geometry::load_points(&mut body.geometry, folder)
             {
-                blame(Some(index), error.key, error.message);
+                report(Some(index), error.key, error.message);
             }
             continue;
         }
-        let look = look(body);
-        match made.get(&look) {
-            // path and hash of the mesh are known by now
+        let key = shape_key(body);
+        match shapes.get(&key) {
+            // with path and hash of the mesh filled in
             Some((_, geometry)) => body.geometry = geometry.clone(),
-            None => match geometry::make(body, folder) {
+            None => match geometry::build_shape(body, folder) {
                 Ok(shape) => {
-                    made.insert(look.clone(), (shape, body.geometry.clone()));
+                    shapes.insert(key.clone(), (shape, body.geometry.clone()));
                 }
-                Err(error) => blame(Some(index), error.key, error.message),
+                Err(error) => report(Some(index), error.key, error.message),
             },
         }
-        // with anything wrong, no world is built
-        if let Some((shape, _)) = made.get(&look)
+        // with any problem, no world is built
+        if let Some((shape, _)) = shapes.get(&key)
             && problems.borrow().is_empty()
         {
             builder = bodies(body, shape).into_iter().fold(builder, WorldBuilder::body);
@@ -189,12 +188,12 @@ fn world(
     }
     let owners = owners(scene);
     let world = builder.build().map_err(|errors| {
-        let mut blamed = BTreeSet::new();
+        let mut reported = BTreeSet::new();
         for error in errors.0 {
-            let (index, key) = guilty(&error, &owners, &readers);
-            // one of the copies of a body speaks for all of them
-            if blamed.insert((index, key)) {
-                blame(index, key, format!("cannot work: {error}"));
+            let (index, key) = origin(&error, &owners, &readers);
+            // report only one of the copies of a body
+            if reported.insert((index, key)) {
+                report(index, key, format!("cannot work: {error}"));
             }
         }
     });
@@ -203,7 +202,7 @@ fn world(
     if let Some(name) = overflowing.map(|body| body.name()) {
         let message = "has an energy that is not a finite number at the start: \
                        its mass, place or velocity is too large";
-        blame(owners.get(name).copied(), "", message.to_owned());
+        report(owners.get(name).copied(), "", message.to_owned());
         return None;
     }
     Some(world)
@@ -217,35 +216,35 @@ fn has_finite_energy(world: &World, body: &BodyView) -> bool {
     (flight + spin + height).is_finite()
 }
 
-/// Which `[[body]]` of the scene each body of the world comes from, by its name.
+/// The index of the `[[body]]` that each body of the world comes from, by name.
 fn owners(scene: &Scene) -> BTreeMap<String, usize> {
     let names = |(index, body): (usize, &BodyScene)| {
         body.names().into_iter().map(move |name| (name, index))
     };
-    // of bodies that share a name, the last is to be renamed
+    // if bodies share a name, the last one is reported
     scene.bodies.iter().enumerate().flat_map(names).collect()
 }
 
-/// Two bodies with the same look have the same shape, mass and surface.
-fn look(body: &BodyScene) -> String {
+/// A key that is equal for bodies with equal shape, mass and surface.
+fn shape_key(body: &BodyScene) -> String {
     let BodyScene { geometry, scale, sampling, mass_model, mass, surface, .. } = body;
     format!("{geometry:?} {scale:?} {sampling:?} {mass_model:?} {mass:?} {surface:?}")
 }
 
 /// The body, or all its copies.
-fn bodies(scene: &BodyScene, made: &Made) -> Vec<Body> {
-    let centre = scene.position.unwrap_or(made.shape.centre());
+fn bodies(scene: &BodyScene, built: &ShapeAndMass) -> Vec<Body> {
+    let centre = scene.position.unwrap_or(built.shape.centre());
     let poses = scene.copies.as_ref().map_or(vec![(DVec3::ZERO, DQuat::IDENTITY)], |c| c.poses());
     scene
         .names()
         .into_iter()
         .zip(poses)
-        .map(|(name, (at, turn))| {
-            Body::new(made.shape.clone())
+        .map(|(name, (offset, rotation))| {
+            Body::new(built.shape.clone())
                 .name(name)
-                .mass(made.mass)
-                .position(centre + at)
-                .orientation(turn * scene.orientation)
+                .mass(built.mass)
+                .position(centre + offset)
+                .orientation(rotation * scene.orientation)
                 .velocity(scene.initial_velocity)
                 .angular_velocity(scene.initial_angular_velocity)
                 .material(scene.material)
@@ -255,8 +254,8 @@ fn bodies(scene: &BodyScene, made: &Made) -> Vec<Body> {
         .collect()
 }
 
-/// The body and key that a problem which only the finished world shows comes from.
-fn guilty(
+/// The body and key that cause an error in building the world.
+fn origin(
     error: &BuildError,
     owners: &BTreeMap<String, usize>,
     readers: &[Reader],
@@ -271,7 +270,7 @@ fn guilty(
         BuildError::Unstable { .. } => (None, "dt"),
     };
     let index = body.and_then(|name| owners.get(name).copied());
-    // a mass may be given in three ways
+    // the mass can be given by one of three keys
     let key = match index.and_then(|index| readers.get(index)) {
         Some(reader) if key == "mass" => {
             MASS_KEYS.into_iter().find(|key| reader.has(key)).unwrap_or(key)

@@ -1,4 +1,4 @@
-//! What moves a body: `motion`, `oscillation` and `surface_velocity`.
+//! Motion of a body: `motion`, `oscillation` and `surface_velocity`.
 
 use tumble::{DVec3, Oscillation, Prescribed};
 
@@ -8,12 +8,12 @@ use super::reader::{Range, Reader};
 
 const MOTIONS: [&str; 3] = ["free", "fixed", "prescribed"];
 
-/// Reads how a body moves; `starts` are the keys of its motion at t = 0 with their values.
-pub fn motion(reader: &Reader, starts: [(&'static str, DVec3); 2]) -> MotionScene {
+/// Reads the motion of a body; `initial` are the keys and values of its velocities at t = 0.
+pub fn motion(reader: &Reader, initial: [(&'static str, DVec3); 2]) -> MotionScene {
     let choice = reader.choice("motion", &MOTIONS);
-    let swing = reader.table("oscillation").and_then(oscillation);
-    let belt = reader.vector("surface_velocity");
-    // of a word that is none of these, nobody knows what goes with it
+    let oscillation = reader.table("oscillation").and_then(read_oscillation);
+    let surface_velocity = reader.vector("surface_velocity");
+    // with an invalid value, the other keys cannot be checked
     if choice.is_none() && reader.has("motion") {
         return MotionScene::Free;
     }
@@ -26,24 +26,22 @@ pub fn motion(reader: &Reader, starts: [(&'static str, DVec3); 2]) -> MotionScen
         let message = "only goes with motion = \"fixed\" or \"prescribed\": a free body would not keep its place";
         reader.problem("surface_velocity", message);
     }
-    let surface_velocity = belt.unwrap_or(DVec3::ZERO);
+    let surface_velocity = surface_velocity.unwrap_or(DVec3::ZERO);
     match motion {
         "fixed" => {
-            for (key, _) in starts.into_iter().filter(|(_, start)| *start != DVec3::ZERO) {
+            for (key, _) in initial.into_iter().filter(|(_, start)| *start != DVec3::ZERO) {
                 let message = "must be zero or left out: a \"fixed\" body does not move";
                 let problem = Problem::new(reader.place_of(key), reader.key(key), message);
                 reader.report(problem.help("motion = \"prescribed\" keeps it for ever"));
             }
             MotionScene::Fixed { surface_velocity }
         }
-        "prescribed" => {
-            MotionScene::Prescribed(Prescribed { oscillation: swing, surface_velocity })
-        }
+        "prescribed" => MotionScene::Prescribed(Prescribed { oscillation, surface_velocity }),
         _ => MotionScene::Free,
     }
 }
 
-fn oscillation(reader: Reader) -> Option<Oscillation> {
+fn read_oscillation(reader: Reader) -> Option<Oscillation> {
     let amplitude = reader.vector("amplitude");
     let frequency = reader.number("frequency", Range::Positive);
     let phase = reader.number("phase", Range::Finite).unwrap_or(0.0);

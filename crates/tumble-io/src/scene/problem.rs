@@ -8,7 +8,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use super::place::{Place, Source};
 
 /// More problems than this are counted, not shown.
-const MOST_SHOWN: usize = 100;
+const MAX_SHOWN: usize = 100;
 
 /// One thing that is wrong.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl SceneError {
                 key => format!("`{}` {message}", cut(key, 200)),
             }
         };
-        self.problems.iter().take(MOST_SHOWN).map(words).collect()
+        self.problems.iter().take(MAX_SHOWN).map(words).collect()
     }
 
     /// All problems (of very many, the first hundred), each with file, line, column and the text
@@ -68,10 +68,10 @@ impl SceneError {
     pub fn render(&self, colour: bool) -> String {
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let renderer = renderer.decor_style(DecorStyle::Ascii);
-        let shown = self.problems.iter().take(MOST_SHOWN);
+        let shown = self.problems.iter().take(MAX_SHOWN);
         let mut reports: Vec<String> =
             shown.map(|problem| renderer.render(&[self.group(problem)])).collect();
-        let hidden = self.problems.len().saturating_sub(MOST_SHOWN);
+        let hidden = self.problems.len().saturating_sub(MAX_SHOWN);
         if hidden > 0 {
             reports.push(format!("and {hidden} more problems"));
         }

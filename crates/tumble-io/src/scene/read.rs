@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use tumble::{DVec3, Integrator, Material, Overlaps, WallBox, WallPlane};
 
-use super::body::{self, MOST_COPIES};
+use super::body::{self, MAX_COPIES};
 use super::common::{is_unit, material, orientation};
 use super::description::{BodyScene, BoxScene, Copies, OutputScene, Scene, WallScene};
 use super::problem::Problem;
@@ -12,7 +12,7 @@ use super::reader::{Range, Reader};
 use super::tree::Node;
 
 /// More steps than a double can count cannot be meant.
-const MOST_STEPS: f64 = 9e15;
+const MAX_STEPS: f64 = 9e15;
 
 /// Reads a whole scene; what is wrong goes to `problems`, and a default takes its place.
 /// The second value says of each body whether nothing was wrong with it.
@@ -20,7 +20,7 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
     let top = Reader::new(root, String::new(), problems);
     let duration = top.number("duration", Range::NotNegative).unwrap_or(3.0);
     let dt = top.number("dt", Range::Positive).unwrap_or(1e-3);
-    if duration / dt > MOST_STEPS {
+    if duration / dt > MAX_STEPS {
         let key = if top.has("dt") { "dt" } else { "duration" };
         top.problem(key, format!("leads to {:e} steps, more than can be counted", duration / dt));
     } else if duration > 0.0 && (duration / dt).round() == 0.0 {
@@ -80,8 +80,8 @@ fn bodies(top: &Reader, problems: &RefCell<Vec<Problem>>) -> (Vec<BodyScene>, Ve
     };
     let (bodies, sound): (Vec<BodyScene>, _) = tables.into_iter().enumerate().map(read).unzip();
     let total: u64 = bodies.iter().map(|b| b.copies.as_ref().map_or(1, Copies::total)).sum();
-    if total > MOST_COPIES {
-        top.problem("body", format!("leads to {total} bodies; at most {MOST_COPIES} can be run"));
+    if total > MAX_COPIES {
+        top.problem("body", format!("leads to {total} bodies; at most {MAX_COPIES} can be run"));
     }
     (bodies, sound)
 }

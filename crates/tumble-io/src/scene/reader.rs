@@ -1,4 +1,4 @@
-//! Reads keys of a table by name, type and range, and collects what is wrong with them.
+//! Reads the keys of a table by name, type and range, and collects the problems.
 
 use std::cell::RefCell;
 
@@ -8,7 +8,7 @@ use super::place::Place;
 use super::problem::Problem;
 use super::tree::{Entry, Node, Value};
 
-/// What a number may be.
+/// The range of a number.
 #[derive(Clone, Copy, Debug)]
 pub enum Range {
     /// Any finite number.
@@ -46,19 +46,19 @@ impl Range {
     }
 }
 
-/// A table while it is read. Keys that nobody asked for are reported by [`Reader::finish`].
+/// A table while it is read. [`Reader::finish`] reports the keys that were not read.
 pub struct Reader<'a> {
-    /// Whether this is a table at all; of anything else, nothing more needs to be said.
+    /// Whether this is a table; if not, that is the only problem reported.
     is_table: bool,
     entries: &'a [Entry],
     place: Place,
     path: String,
-    asked: RefCell<Vec<&'static str>>,
+    requested: RefCell<Vec<&'static str>>,
     problems: &'a RefCell<Vec<Problem>>,
 }
 
 impl<'a> Reader<'a> {
-    /// Reads `node`, which stands at the dotted `path`; anything but a table is a problem.
+    /// Reads `node` at the dotted `path`; anything but a table is a problem.
     pub fn new(node: &'a Node, path: String, problems: &'a RefCell<Vec<Problem>>) -> Self {
         let entries: &[Entry] = match &node.value {
             Value::Table(entries) => entries,
@@ -69,8 +69,8 @@ impl<'a> Reader<'a> {
             }
         };
         let is_table = matches!(node.value, Value::Table(_));
-        let (place, asked) = (node.place.clone(), RefCell::default());
-        Self { is_table, entries, place, path, asked, problems }
+        let (place, requested) = (node.place.clone(), RefCell::default());
+        Self { is_table, entries, place, path, requested, problems }
     }
 
     /// The dotted name of one of its keys.
@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
         self.problems.borrow_mut().push(problem);
     }
 
-    /// Where the value of a key stands, or else the table.
+    /// The place of the value of a key, or of the table if the key is not given.
     pub fn place_of(&self, key: &str) -> Place {
         let found = self.entries.iter().find(|entry| entry.key == key);
         found.map_or(self.place.clone(), |entry| entry.node.place.clone())
@@ -105,13 +105,13 @@ impl<'a> Reader<'a> {
         self.entries.iter().any(|entry| entry.key == key)
     }
 
-    /// Takes keys as known, for a table in which something else keeps them from being read.
-    pub fn know(&self, keys: &[&'static str]) {
-        self.asked.borrow_mut().extend(keys);
+    /// Marks keys as known, where another problem prevents reading them.
+    pub fn mark_known(&self, keys: &[&'static str]) {
+        self.requested.borrow_mut().extend(keys);
     }
 
     fn get(&self, key: &'static str) -> Option<&'a Node> {
-        self.asked.borrow_mut().push(key);
+        self.requested.borrow_mut().push(key);
         self.entries.iter().find(|entry| entry.key == key).map(|entry| &entry.node)
     }
 
@@ -131,7 +131,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A whole number from `least` to `most`.
+    /// A whole number from `least` to `most`, inclusive.
     pub fn integer(&self, key: &'static str, least: i64, most: i64) -> Option<i64> {
         let node = self.get(key)?;
         match node.value {
@@ -243,11 +243,11 @@ impl<'a> Reader<'a> {
             _ => None,
         };
         if found.is_none() {
-            let (said, near) = match &node.value {
+            let (given, near) = match &node.value {
                 Value::String(text) => (format!("\"{text}\""), nearest(text, allowed)),
                 other => (other.kind().to_owned(), None),
             };
-            let message = format!("must be one of {}, but is {said}", quoted(allowed));
+            let message = format!("must be one of {}, but is {given}", quoted(allowed));
             let problem = Problem::new(node.place.clone(), self.key(key), message);
             self.report(match near {
                 Some(near) => problem.help(format!("did you mean \"{near}\"?")),
@@ -288,9 +288,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Of keys that exclude each other, the one that is given. More than one is a problem.
+    /// The one that is given of several keys that exclude each other. More than one is a problem.
     pub fn only_one(&self, keys: &[&'static str]) -> Option<&'static str> {
-        self.know(keys);
+        self.mark_known(keys);
         let given: Vec<_> = keys.iter().filter(|key| self.has(key)).copied().collect();
         if given.len() > 1 {
             let rest = quoted_keys(&given[..given.len() - 1]);
@@ -302,11 +302,11 @@ impl<'a> Reader<'a> {
         given.first().copied()
     }
 
-    /// Reports the keys that nobody asked for.
+    /// Reports the keys that were not requested.
     pub fn finish(self) {
-        let asked = self.asked.borrow();
-        for entry in self.entries.iter().filter(|entry| !asked.contains(&entry.key.as_str())) {
-            let mut known: Vec<&str> = asked.clone();
+        let requested = self.requested.borrow();
+        for entry in self.entries.iter().filter(|entry| !requested.contains(&entry.key.as_str())) {
+            let mut known: Vec<&str> = requested.clone();
             known.sort_unstable();
             known.dedup();
             let help = match meant(&entry.key, &known) {
@@ -325,7 +325,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A number as people write it, without hundreds of zeros.
+/// A number in its usual notation, with an exponent if it is very large or small.
 fn plain(x: f64) -> String {
     let long = x.is_finite() && x != 0.0 && !(1e-6..1e15).contains(&x.abs());
     if long { format!("{x:e}") } else { format!("{x}") }
@@ -345,7 +345,7 @@ fn numbers<const N: usize>(node: &Node) -> Option<[f64; N]> {
     numbers?.try_into().ok()
 }
 
-/// What people call things elsewhere, and what they are called here.
+/// Names in other programs, and the names of the keys here.
 const ALIASES: [(&str, &str); 22] = [
     ("friction", "friction_stiffness"),
     ("mu", "friction_stiffness"),
@@ -371,14 +371,14 @@ const ALIASES: [(&str, &str); 22] = [
     ("time", "duration"),
 ];
 
-/// The known word that `word` is another name for, or else is most like.
+/// The known word for which `word` is an alias, or else the most similar one.
 pub fn meant<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let alias = ALIASES.iter().find(|(alias, _)| *alias == word);
     let named = alias.and_then(|(_, name)| known.iter().find(|known| *known == name));
     named.copied().or_else(|| nearest(word, known))
 }
 
-/// The word most like `word`, if one is near enough to have been meant.
+/// The word most similar to `word`, if it is similar enough.
 pub fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     let score = |candidate: &str| strsim::jaro_winkler(word, candidate);
     let best = known.iter().copied().max_by(|a, b| score(a).total_cmp(&score(b)))?;
@@ -398,8 +398,8 @@ mod tests {
     use super::super::tree::parse;
     use super::*;
 
-    /// What is told of `text` when `read` reads it.
-    fn told(text: &str, read: impl FnOnce(&Reader)) -> Vec<String> {
+    /// The problems that `read` reports for `text`.
+    fn problems_of(text: &str, read: impl FnOnce(&Reader)) -> Vec<String> {
         let (root, _) = parse(text, 0);
         let problems = RefCell::default();
         let reader = Reader::new(&root, String::new(), &problems);
@@ -411,28 +411,32 @@ mod tests {
     #[test]
     fn numbers_are_read_within_their_range() {
         assert!(
-            told("a = 1", |r| assert_eq!(r.number("a", Range::Positive), Some(1.0))).is_empty()
+            problems_of("a = 1", |r| assert_eq!(r.number("a", Range::Positive), Some(1.0)))
+                .is_empty()
         );
-        assert!(told("", |r| assert_eq!(r.number("a", Range::Positive), None)).is_empty());
+        assert!(problems_of("", |r| assert_eq!(r.number("a", Range::Positive), None)).is_empty());
         for wrong in ["a = 0", "a = nan", "a = \"1\"", "a = [1]"] {
-            assert_eq!(told(wrong, |r| assert_eq!(r.number("a", Range::Positive), None)).len(), 1);
+            assert_eq!(
+                problems_of(wrong, |r| assert_eq!(r.number("a", Range::Positive), None)).len(),
+                1
+            );
         }
         for wrong in ["a = [1, 2]", "a = [1, 2, inf]", "a = [1, 2, true]", "a = 1"] {
-            assert_eq!(told(wrong, |r| assert_eq!(r.vector("a"), None)).len(), 1);
+            assert_eq!(problems_of(wrong, |r| assert_eq!(r.vector("a"), None)).len(), 1);
         }
     }
 
     #[test]
-    fn of_keys_that_exclude_each_other_none_is_unknown() {
+    fn exclusive_keys_are_known_keys() {
         let read = |r: &Reader| assert_eq!(r.only_one(&["a", "b"]), Some("a"));
-        let problems = told("a = 1\nb = 2", read);
+        let problems = problems_of("a = 1\nb = 2", read);
         assert_eq!(problems.len(), 1);
         assert!(problems[0].contains("cannot stand beside `a`"), "{problems:?}");
     }
 
     #[test]
-    fn what_is_no_table_is_told_once() {
-        let problems = told("t = 3", |r| {
+    fn a_value_that_is_not_a_table_is_reported_once() {
+        let problems = problems_of("t = 3", |r| {
             let inner = r.table("t").unwrap();
             inner.problem("x", "is missing");
             inner.finish();
@@ -442,7 +446,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_word() {
+    fn nearest_finds_similar_words_only() {
         let known = ["gravity", "duration", "dt"];
         assert_eq!(nearest("gravty", &known), Some("gravity"));
         assert_eq!(nearest("zzz", &known), None);

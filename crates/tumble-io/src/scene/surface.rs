@@ -1,4 +1,4 @@
-//! What other bodies meet of a body: `surface` and `particle_radius`.
+//! The contact surface of a body: `surface` and `particle_radius`.
 
 use tumble::Surface;
 
@@ -8,14 +8,13 @@ use super::reader::{Range, Reader};
 
 const SURFACES: [&str; 3] = ["none", "mesh", "spheres"];
 
-/// Reads `surface` and `particle_radius` of a body; of a body whose geometry cannot be made sense of,
-/// whether it has a mesh is not asked.
+/// Reads `surface` and `particle_radius` of a body. Without a valid geometry it does not check whether the body has a mesh.
 pub fn surface(reader: &Reader, geometry: Option<&Geometry>) -> Surface {
     let choice = reader.choice("surface", &SURFACES);
     let radius = reader.number("particle_radius", Range::Positive);
     let has_radius = reader.has("particle_radius");
     match choice {
-        // a word that is none of these was told; without one the radius speaks for itself
+        // an invalid value has been reported; without a value the radius implies spheres
         None if reader.has("surface") => Surface::None,
         None => radius.map_or(Surface::None, |radius| Surface::Spheres { radius }),
         Some("spheres") => {

@@ -1,22 +1,20 @@
-//! A TOML document as a tree in which every key and value knows where it stands, and the
-//! overrides of `--set` laid over it.
+//! A TOML document as a tree whose keys and values have source places, and the overrides of `--set`.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::place::{Place, Source};
+use super::place::Place;
 use super::problem::Problem;
 
-/// Keys of which a table may hold only one, and which mean something alone: setting one from outside takes the
-/// others out.
-pub const RIVALS: [&[&str]; 3] = [
+/// Groups of keys of which a table may have only one. `--set` of one removes the others.
+pub const EXCLUSIVE_KEYS: [&[&str]; 3] = [
     &["collision_stiffness", "collision_stiffness_per_area"],
     &["collision_damping", "restitution"],
     &["particle_mass", "mass", "density"],
 ];
 
-/// A key of more parts than this leads nowhere.
-const MOST_PARTS: usize = 32;
+/// The largest number of parts of a dotted key.
+const MAX_KEY_PARTS: usize = 32;
 
 /// A value and its place.
 #[derive(Clone, Debug)]
@@ -25,7 +23,7 @@ pub struct Node {
     pub place: Place,
 }
 
-/// What TOML can say.
+/// A TOML value.
 #[derive(Clone, Debug)]
 pub enum Value {
     Table(Vec<Entry>),
@@ -46,7 +44,7 @@ pub struct Entry {
 }
 
 impl Value {
-    /// What to call it in a message.
+    /// Its name in messages.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Table(_) => "a table",
@@ -60,7 +58,7 @@ impl Value {
     }
 }
 
-/// Parses `text` as source `source`; the syntax errors, if any, all at once.
+/// Parses `text` as source number `source`; returns all syntax errors.
 pub fn parse(text: &str, source: usize) -> (Node, Vec<Problem>) {
     let (table, errors) = DeTable::parse_recoverable(text);
     let problems = errors
@@ -83,7 +81,7 @@ fn from_table(table: DeTable<'_>, source: usize) -> Value {
             node: from_value(value, source),
         })
         .collect();
-    // problems come in the order of the file
+    // problems are reported in the order of the file
     entries.sort_by_key(|entry| entry.place.span.start);
     Value::Table(entries)
 }
@@ -107,7 +105,7 @@ fn from_value(value: Spanned<DeValue<'_>>, source: usize) -> Node {
     Node { value, place }
 }
 
-/// An integer too large for an `i64`: a float says the same within rounding.
+/// An integer too large for an `i64`, as the nearest float.
 fn large(digits: &str, radix: u32) -> f64 {
     let digit = |c: char| c.to_digit(radix).map(f64::from);
     match radix {
@@ -116,12 +114,10 @@ fn large(digits: &str, radix: u32) -> f64 {
     }
 }
 
-/// Lays `KEY=VALUE` over the tree. KEY is dotted; `body.scale` reaches every body, `body.0.scale`
-/// the first. A VALUE that is no TOML is taken as a string, so that `integrator=euler` works. A key of which only one
-/// may be given, such as `mass` or `density`, takes the place of the other: whoever sets one knows which
-/// is meant.
-pub fn set(root: &mut Node, assignment: &str, source: usize) -> Result<Source, Problem> {
-    let told = Source { name: "--set".to_owned(), text: assignment.to_owned() };
+/// Applies `KEY=VALUE` to the tree. KEY is dotted: `body.scale` sets the key of every body, `body.0.scale` of the first. A VALUE that is
+/// not TOML is taken as a string, so that `integrator=euler` works. Of keys that exclude each other, such as `mass` and
+/// `density`, the new one replaces the old one.
+pub fn set(root: &mut Node, assignment: &str, source: usize) -> Result<(), Problem> {
     let whole = Place { source, span: 0..assignment.len() };
     let Some((key, text)) = assignment.split_once('=') else {
         let message = "`--set` takes KEY=VALUE, for example --set dt=1e-4".to_owned();
@@ -134,18 +130,16 @@ pub fn set(root: &mut Node, assignment: &str, source: usize) -> Result<Source, P
         Err(_) => Value::String(text.trim().to_owned()),
     };
     let path: Vec<&str> = key.trim().split('.').map(str::trim).collect();
-    if path.iter().any(|part| part.is_empty()) || path.len() > MOST_PARTS {
+    if path.iter().any(|part| part.is_empty()) || path.len() > MAX_KEY_PARTS {
         let message = "is no key; write it as `dt` or `collision.collision_stiffness`".to_owned();
         return Err(Problem::new(Place { source, span: 0..key.len() }, key, message));
     }
     let node = Node { value: relocate(value, &place), place };
     let key_place = Place { source, span: 0..key.len() };
-    assign(root, &path, &node, &key_place)
-        .map_err(|message| Problem::new(key_place, "", message))?;
-    Ok(told)
+    assign(root, &path, &node, &key_place).map_err(|message| Problem::new(key_place, "", message))
 }
 
-/// Everything inside an overriding value stands where the value as a whole stands.
+/// Gives everything inside a value the same place.
 fn relocate(value: Value, place: &Place) -> Value {
     let node = |node: Node| Node { value: relocate(node.value, place), place: place.clone() };
     match value {
@@ -160,10 +154,10 @@ fn relocate(value: Value, place: &Place) -> Value {
     }
 }
 
-/// Takes the keys out of a table that cannot stand beside `key`.
-fn remove_rivals(entries: &mut Vec<Entry>, key: &str) {
-    let rivals = RIVALS.into_iter().find(|rivals| rivals.contains(&key)).unwrap_or_default();
-    entries.retain(|entry| entry.key == key || !rivals.contains(&entry.key.as_str()));
+/// Removes the keys that exclude `key` from a table.
+fn remove_exclusive(entries: &mut Vec<Entry>, key: &str) {
+    let group = EXCLUSIVE_KEYS.into_iter().find(|group| group.contains(&key)).unwrap_or_default();
+    entries.retain(|entry| entry.key == key || !group.contains(&entry.key.as_str()));
 }
 
 fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result<(), String> {
@@ -174,7 +168,7 @@ fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result
     match &mut target.value {
         Value::Table(entries) => {
             if rest.is_empty() {
-                remove_rivals(entries, part);
+                remove_exclusive(entries, part);
             }
             let at = match entries.iter().position(|entry| entry.key == part) {
                 Some(at) => at,
@@ -215,21 +209,21 @@ mod tests {
     }
 
     /// The tree as text, without places.
-    fn told(node: &Node) -> String {
+    fn text_of(node: &Node) -> String {
         match &node.value {
             Value::Table(entries) => {
-                let each = entries.iter().map(|e| format!("{}={}", e.key, told(&e.node)));
+                let each = entries.iter().map(|e| format!("{}={}", e.key, text_of(&e.node)));
                 format!("{{{}}}", each.collect::<Vec<_>>().join(","))
             }
             Value::Array(items) => {
-                format!("[{}]", items.iter().map(told).collect::<Vec<_>>().join(","))
+                format!("[{}]", items.iter().map(text_of).collect::<Vec<_>>().join(","))
             }
             other => format!("{other:?}"),
         }
     }
 
     #[test]
-    fn keys_and_values_know_their_place() {
+    fn keys_and_values_have_places() {
         let root = tree("a = 1\n[b]\nc = [true, \"x\"]\n");
         let Value::Table(top) = &root.value else { panic!("no table") };
         assert_eq!((top[0].place.span.clone(), top[0].node.place.span.clone()), (0..1, 4..5));
@@ -239,24 +233,24 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_all_kinds() {
+    fn all_notations_of_numbers_are_read() {
         let text = "a = 1_000\nb = 0x10\nc = 1e3\nd = -inf\ne = 99999999999999999999\nf = 0xFFFFFFFFFFFFFFFFFF";
         assert_eq!(
-            told(&tree(text)),
+            text_of(&tree(text)),
             "{a=Integer(1000),b=Integer(16),c=Number(1000.0),d=Number(-inf),\
              e=Number(1e20),f=Number(4.722366482869645e21)}"
         );
     }
 
     #[test]
-    fn set_reaches_tables_bodies_and_what_is_not_there_yet() {
+    fn set_reaches_tables_bodies_and_missing_keys() {
         let mut root = tree("dt = 1\n[[body]]\nscale = 1\n[[body]]\n");
         for assignment in ["dt=2", "body.scale=3", "body.0.scale = 4", "box.min=[0]", "w=a b", "e="]
         {
             set(&mut root, assignment, 1).unwrap();
         }
         assert_eq!(
-            told(&root),
+            text_of(&root),
             "{dt=Integer(2),body=[{scale=Integer(4)},{scale=Integer(3)}],\
              box={min=[Integer(0)]},w=String(\"a b\"),e=String(\"\")}"
         );
@@ -265,11 +259,11 @@ mod tests {
             set(&mut root, assignment, 1).unwrap();
         }
         assert_eq!(
-            told(&root),
+            text_of(&root),
             "{collision={restitution=Integer(3),x=Integer(1),collision_stiffness_per_area=Integer(2)}}"
         );
         let mut root = tree("dt = 1\n[[body]]\nscale = 1\n[[body]]\n");
-        let deep = vec!["a"; MOST_PARTS + 1].join(".") + "=1";
+        let deep = vec!["a"; MAX_KEY_PARTS + 1].join(".") + "=1";
         for wrong in ["dt", "=1", "a..b=1", "dt.x=1", "body.2.scale=1", deep.as_str()] {
             assert!(set(&mut root, wrong, 1).is_err(), "{wrong}");
         }
