@@ -1,4 +1,4 @@
-//! `checkpoint.tumble`: all that a run needs to go on to the same bits.
+//! `checkpoint.tumble`: everything that a run needs to continue with the same bits.
 //!
 //! | bytes | hold |
 //! |---|---|
@@ -8,10 +8,10 @@
 //! | | four sections, each: a name of 4 letters, its length (8 bytes), its bytes |
 //! | 32 | SHA-256 of everything before |
 //!
-//! The sections, in this order: `NAME`, the scene's name; `SCEN`, the scene as TOML; `HOW `, a byte that
-//! is 1 where the run was forced, and the energy at the start (J); `STAT`, the state. All numbers
-//! are little-endian, doubles as their bits. Every version, also one to come, ends with the
-//! SHA-256 of what is before, so that a file of a later version can be told from a damaged one.
+//! The sections, in this order: `NAME`, the scene's name; `SCEN`, the scene as TOML; `HOW `, a byte that is 1 if
+//! the run was forced, and the energy at the start (J); `STAT`, the state. All numbers
+//! are little-endian, doubles as their bits. Every version, including future ones, ends with the SHA-256
+//! of everything before, so that a file of a later version can be distinguished from a damaged one.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -25,64 +25,64 @@ mod state;
 
 use bytes::Bytes;
 
-/// How every checkpoint begins: bytes that a transfer as text would change.
+/// The first bytes of every checkpoint; a transfer in text mode would change them.
 pub const MAGIC: [u8; 12] = *b"\x89TUMBLE\r\n\x1a\n\0";
 /// The version of the format that is written.
 pub const VERSION: u32 = 3;
 /// Bytes before the first section.
-const HEAD: usize = 12 + 4 + 8;
+const HEADER_LENGTH: usize = 12 + 4 + 8;
 /// Bytes after the last section.
-const SUM: usize = 32;
-/// A file larger than this is something else.
+const CHECKSUM_LENGTH: usize = 32;
+/// The largest size of a checkpoint.
 const MAX_BYTES: u64 = 4 << 30;
 
-/// All that a run needs to go on.
+/// Everything that a run needs to continue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
     /// The scene's name.
     pub name: String,
-    /// The scene as run, as TOML, meshes by full path and hash.
+    /// The scene as run, as TOML, with meshes by full path and hash.
     pub scene: String,
     /// Whether a step above the critical one was accepted.
     pub force: bool,
     /// Total energy at the start of the run (J).
     pub energy_start: f64,
-    /// All that has evolved.
+    /// The state.
     pub state: State,
 }
 
-/// Why there is no checkpoint in a file; the words go on after the file's name.
+/// An error in reading a checkpoint. The message continues a sentence that begins with the name of the file.
 #[derive(Debug)]
 pub enum CheckpointError {
     /// It cannot be read.
     Read(io::Error),
-    /// It is no ordinary file, or far too large.
-    NoFile,
-    /// There is nothing in it.
+    /// It is not a regular file, or too large.
+    NotAFile,
+    /// It is empty.
     Empty,
-    /// It is something else.
-    Foreign,
+    /// It is not a checkpoint.
+    NotACheckpoint,
     /// Its end is missing.
-    Short {
-        /// Bytes that are there.
+    Truncated {
+        /// Number of bytes found.
         found: u64,
     },
-    /// Some of its bytes are not those that were written.
+    /// Its checksum does not match.
     Damaged,
-    /// A later version of the program wrote it.
+    /// Another version of the program wrote it.
     Version(u32),
-    /// It is whole, but what it says makes no sense: here.
-    Nonsense(&'static str),
+    /// It is complete, but this part of it is invalid.
+    Invalid(&'static str),
 }
 
 impl std::fmt::Display for CheckpointError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Read(error) => write!(f, "cannot be read: {error}"),
-            Self::NoFile => write!(f, "is no ordinary file of at most {} GiB", MAX_BYTES >> 30),
+            Self::NotAFile => write!(f, "is no ordinary file of at most {} GiB", MAX_BYTES >> 30),
             Self::Empty => write!(f, "is empty"),
-            Self::Foreign => write!(f, "is no checkpoint: it begins with other bytes"),
-            Self::Short { found } => {
+            Self::NotACheckpoint => write!(f, "is no checkpoint: it begins with other bytes"),
+            Self::Truncated { found } => {
                 write!(f, "is cut short: only its first {found} bytes are there")
             }
             Self::Damaged => write!(f, "is damaged: its checksum does not match its bytes"),
@@ -91,7 +91,7 @@ impl std::fmt::Display for CheckpointError {
                 "is of format version {version}, but this program reads version {VERSION}: \
                  resume it with the program that wrote it"
             ),
-            Self::Nonsense(part) => write!(f, "is no checkpoint of a run: {part} makes no sense"),
+            Self::Invalid(part) => write!(f, "is no checkpoint of a run: {part} makes no sense"),
         }
     }
 }
@@ -112,16 +112,18 @@ pub(crate) fn encode(
     (force, energy_start): (bool, f64),
     state: &State,
 ) -> Vec<u8> {
-    let mut how = vec![u8::from(force)];
-    how.extend(energy_start.to_le_bytes());
+    let mut conditions = vec![u8::from(force)];
+    conditions.extend(energy_start.to_le_bytes());
     let state = state::bytes(state);
     let sections: [(&[u8; 4], &[u8]); 4] = [
         (b"NAME", name.as_bytes()),
         (b"SCEN", scene.as_bytes()),
-        (b"HOW ", &how),
+        (b"HOW ", &conditions),
         (b"STAT", &state),
     ];
-    let length = HEAD + SUM + sections.iter().map(|(_, bytes)| 12 + bytes.len()).sum::<usize>();
+    let length = HEADER_LENGTH
+        + CHECKSUM_LENGTH
+        + sections.iter().map(|(_, bytes)| 12 + bytes.len()).sum::<usize>();
     let mut all = Vec::with_capacity(length);
     all.extend(MAGIC);
     all.extend(VERSION.to_le_bytes());
@@ -143,56 +145,57 @@ pub(crate) fn encode(
 pub fn read_checkpoint(path: &Path) -> Result<Checkpoint, CheckpointError> {
     let metadata = std::fs::metadata(path).map_err(CheckpointError::Read)?;
     if !metadata.is_file() || metadata.len() > MAX_BYTES {
-        return Err(CheckpointError::NoFile);
+        return Err(CheckpointError::NotAFile);
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(CheckpointError::Read)?;
-    // a file that grows meanwhile is not read for ever
+    // bound the read, since the file may grow
     file.take(MAX_BYTES).read_to_end(&mut bytes).map_err(CheckpointError::Read)?;
     parse_checkpoint(&bytes)
 }
 
-/// Reads a checkpoint from bytes of any origin. Takes no more memory than a few times their number.
+/// Reads a checkpoint from untrusted bytes. It needs at most a few times their size in memory.
 ///
 /// # Errors
-/// [`CheckpointError`] for everything but a whole checkpoint.
+/// [`CheckpointError`] for anything but a complete checkpoint.
 pub fn parse_checkpoint(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     let found = bytes.len() as u64;
     if bytes.is_empty() {
         return Err(CheckpointError::Empty);
     }
     if !bytes.starts_with(&MAGIC[..bytes.len().min(MAGIC.len())]) {
-        return Err(CheckpointError::Foreign);
+        return Err(CheckpointError::NotACheckpoint);
     }
-    let short = CheckpointError::Short { found };
-    if bytes.len() < HEAD + SUM {
-        return Err(short);
+    let truncated = CheckpointError::Truncated { found };
+    if bytes.len() < HEADER_LENGTH + CHECKSUM_LENGTH {
+        return Err(truncated);
     }
-    let (body, sum) = bytes.split_at(bytes.len() - SUM);
-    let whole = Sha256::digest(body).as_slice() == sum;
+    let (body, sum) = bytes.split_at(bytes.len() - CHECKSUM_LENGTH);
+    let is_intact = Sha256::digest(body).as_slice() == sum;
     let mut rest = Bytes(&body[MAGIC.len()..]);
-    let head = rest.u32().zip(rest.u64());
-    let (version, length) = head.ok_or(CheckpointError::Damaged)?;
-    if !whole {
-        return Err(if length > found { short } else { CheckpointError::Damaged });
+    let header = rest.u32().zip(rest.u64());
+    let (version, length) = header.ok_or(CheckpointError::Damaged)?;
+    if !is_intact {
+        return Err(if length > found { truncated } else { CheckpointError::Damaged });
     }
     if version != VERSION {
         return Err(CheckpointError::Version(version));
     }
     if length != found {
-        return Err(CheckpointError::Nonsense("its length"));
+        return Err(CheckpointError::Invalid("its length"));
     }
     let name = rest.section(b"NAME").and_then(text);
-    let name = name.ok_or(CheckpointError::Nonsense("the scene's name"))?;
+    let name = name.ok_or(CheckpointError::Invalid("the scene's name"))?;
     let scene = rest.section(b"SCEN").and_then(text);
-    let scene = scene.ok_or(CheckpointError::Nonsense("the scene"))?;
-    let how = rest.section(b"HOW ").and_then(|mut how| {
-        let (force, energy) = (how.take(1)?[0], how.f64()?);
-        (force <= 1 && energy.is_finite() && how.is_empty()).then_some((force == 1, energy))
+    let scene = scene.ok_or(CheckpointError::Invalid("the scene"))?;
+    let conditions = rest.section(b"HOW ").and_then(|mut bytes| {
+        let (force, energy) = (bytes.take(1)?[0], bytes.f64()?);
+        (force <= 1 && energy.is_finite() && bytes.is_empty()).then_some((force == 1, energy))
     });
-    let (force, energy_start) = how.ok_or(CheckpointError::Nonsense("the energy at the start"))?;
+    let (force, energy_start) =
+        conditions.ok_or(CheckpointError::Invalid("the energy at the start"))?;
     let state = rest.section(b"STAT").and_then(state::parse).filter(|_| rest.is_empty());
-    let state = state.ok_or(CheckpointError::Nonsense("the state"))?;
+    let state = state.ok_or(CheckpointError::Invalid("the state"))?;
     Ok(Checkpoint { name, scene, force, energy_start, state })
 }
 

@@ -133,7 +133,7 @@ fn springs_of_no_kind_and_more_than_there_are_make_no_sense() {
         let mut other = bytes.clone();
         other[at] = value;
         let error = parse_checkpoint(&sign(other)).unwrap_err();
-        assert!(matches!(error, CheckpointError::Nonsense("the state")), "{at} {value}: {error}");
+        assert!(matches!(error, CheckpointError::Invalid("the state")), "{at} {value}: {error}");
     }
 }
 
@@ -142,7 +142,7 @@ fn every_shorter_file_is_cut_short() {
     let bytes = checkpoint().to_bytes();
     for length in 1..bytes.len() {
         let error = parse_checkpoint(&bytes[..length]).unwrap_err();
-        assert!(matches!(error, CheckpointError::Short { .. }), "{length}: {error}");
+        assert!(matches!(error, CheckpointError::Truncated { .. }), "{length}: {error}");
     }
     let longer = [bytes.as_slice(), b"x"].concat();
     assert!(matches!(parse_checkpoint(&longer), Err(CheckpointError::Damaged)));
@@ -163,7 +163,7 @@ fn other_files_are_told_by_what_they_are() {
     says(&later, "damaged");
     says(&sign(later), "format version 9, but this program reads version 3");
     let folder = tempfile::tempdir().unwrap();
-    assert!(matches!(read_checkpoint(folder.path()), Err(CheckpointError::NoFile)));
+    assert!(matches!(read_checkpoint(folder.path()), Err(CheckpointError::NotAFile)));
     let missing = read_checkpoint(&folder.path().join("no")).unwrap_err();
     assert!(missing.to_string().starts_with("cannot be read: "));
 }

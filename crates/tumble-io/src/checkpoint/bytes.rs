@@ -1,6 +1,6 @@
-//! Reads little-endian values from bytes of any origin.
+//! Reads little-endian values from untrusted bytes.
 
-/// The bytes that are still to be read; every method returns `None` at the end.
+/// The remaining bytes; every method returns `None` at the end.
 #[derive(Clone, Copy)]
 pub(super) struct Bytes<'a>(pub(super) &'a [u8]);
 
@@ -39,7 +39,7 @@ impl<'a> Bytes<'a> {
         self.take(length).map(Bytes)
     }
 
-    /// How many items of `size` bytes follow, if there is room for so many.
+    /// A count of items of `size` bytes, if that many can follow.
     pub(super) fn count(&mut self, size: usize) -> Option<usize> {
         let count = usize::try_from(self.u64()?).ok()?;
         (count <= self.0.len() / size).then_some(count)

@@ -1,5 +1,5 @@
 //! The state as bytes: step, time, number of bodies; position, velocity, orientation (w, x, y, z),
-//! its rest, angular momentum and energy owed of each; number of friction springs of each, and wall, particle
+//! its compensation, angular momentum and energy excess of each; number of friction springs of each, and wall, particle
 //! anchor and stretch of each spring; number of springs between bodies, and first, second, kind (a byte), particle,
 //! other and stretch of each; the totals.
 
@@ -19,7 +19,7 @@ const KINDS: [ContactKind; 4] = [
 ];
 
 pub(super) fn bytes(state: &State) -> Vec<u8> {
-    // taken apart to the last field: one that is added later cannot be forgotten here
+    // destructured completely, so that the compiler reports a new field here
     let State { step, time, bodies, springs, pair_springs, totals } = state;
     let spring_count: usize = springs.iter().map(Vec::len).sum();
     let counted = spring_count * SPRING + pair_springs.len() * PAIR;

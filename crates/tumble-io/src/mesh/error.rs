@@ -2,26 +2,26 @@
 
 use std::path::{Path, PathBuf};
 
-/// Where in a file something is wrong.
+/// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// In a text.
+    /// In a text file.
     Line {
         /// The line, from 1.
         line: usize,
         /// The byte within the line, from 1.
         column: Option<usize>,
     },
-    /// In a binary file, in bytes from its beginning, from 0.
+    /// In a binary file: the offset in bytes.
     Byte(u64),
 }
 
-/// Why a file gave no mesh: what is wrong, where, and what is allowed.
+/// An error in reading a mesh: what is wrong, where, and what is allowed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ReadError {
-    /// The file, unless the bytes came from elsewhere.
+    /// The file, if the bytes came from one.
     pub path: Option<PathBuf>,
-    /// Where in the file, if it is at one place.
+    /// The place in the file, if there is one.
     pub place: Option<Place>,
     /// What is wrong, and what to do.
     pub message: String,

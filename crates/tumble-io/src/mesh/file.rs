@@ -1,4 +1,4 @@
-//! Finds and reads the file itself: which paths are refused, and how to say so.
+//! Finds and reads mesh files, and rejects paths that are not regular files.
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -7,10 +7,10 @@ use std::path::{Component, Path, PathBuf};
 use super::error::ReadError;
 use super::format::Format;
 
-/// Files above this are refused before they are read.
+/// Larger files are rejected without reading them.
 pub(super) const MAX_BYTES: u64 = 4 << 30;
 
-/// Refuses what is not there or no regular file: a folder, a device, a pipe.
+/// Rejects a path that does not exist or is not a regular file.
 pub(super) fn check_exists(path: &Path) -> Result<(), ReadError> {
     match fs::metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Err(missing(path)),
@@ -33,7 +33,7 @@ pub(super) fn check_exists(path: &Path) -> Result<(), ReadError> {
     }
 }
 
-/// The format that the extension stands for.
+/// The format of the extension.
 pub(super) fn format_of(path: &Path) -> Result<Format, ReadError> {
     let supported = Format::SUPPORTED;
     match path.extension().map(|e| e.to_string_lossy()) {
@@ -50,13 +50,13 @@ pub(super) fn format_of(path: &Path) -> Result<Format, ReadError> {
     }
 }
 
-/// The bytes of a file that [`check_exists`] has seen.
+/// The bytes of a file that [`check_exists`] has accepted.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes));
     match read {
         Err(error) => Err(ReadError::new(None, format!("the file can not be read: {error}"))),
-        // it grew in the meantime
+        // the file grew in the meantime
         Ok(_) if bytes.len() as u64 > MAX_BYTES => {
             Err(ReadError::new(None, "the file has more than 4 GiB; at most 4 GiB are read"))
         }
@@ -64,7 +64,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, ReadError> {
     }
 }
 
-/// The real path of a side file, which must lie in the folder of the main file or below.
+/// The real path of a side file, which must be in the folder of the main file or below it.
 pub(super) fn side_file(folder: &Path, name: &str) -> Result<PathBuf, ReadError> {
     let outside = || {
         let message =
@@ -88,7 +88,7 @@ pub(super) fn side_file(folder: &Path, name: &str) -> Result<PathBuf, ReadError>
     }
 }
 
-/// Says that a file is missing, and which one may have been meant.
+/// The error for a missing file, with a suggestion if there is a similar name.
 fn missing(path: &Path) -> ReadError {
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
@@ -104,7 +104,7 @@ fn missing(path: &Path) -> ReadError {
     ReadError::new(None, message)
 }
 
-/// The mesh file in the folder whose name is nearest to the one asked for, if any is near.
+/// The mesh file in the folder with the most similar name, if one is similar enough.
 fn nearest_name(folder: &Path, path: &Path) -> Option<String> {
     let wanted: Vec<char> = path.file_name()?.to_str()?.to_lowercase().chars().take(256).collect();
     let near = (wanted.len() / 3).clamp(1, 4);

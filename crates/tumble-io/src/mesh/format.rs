@@ -14,7 +14,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// What can be read, for messages.
+    /// The supported extensions, for messages.
     pub const SUPPORTED: &'static str = ".obj, .stl, .ply, .gltf, .glb";
 
     /// The format of a file extension without its dot, in upper or lower case.
@@ -28,12 +28,12 @@ impl Format {
         }
     }
 
-    /// Whether exact duplicates are welded unless the caller says otherwise.
+    /// Whether exact duplicates are welded by default.
     pub fn welds(self) -> bool {
         matches!(self, Self::Stl | Self::Gltf)
     }
 
-    /// The format that the first bytes belong to, where they are telling.
+    /// The format that the first bytes indicate, if they are distinctive.
     pub(super) fn sniff(bytes: &[u8]) -> Option<Self> {
         match bytes {
             [b'g', b'l', b'T', b'F', ..] => Some(Self::Gltf),

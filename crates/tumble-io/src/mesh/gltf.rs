@@ -1,14 +1,13 @@
 //! glTF 2, as text with side files or data URIs (`.gltf`) and as one binary file (`.glb`).
 //!
-//! Read here, on `serde_json`, and not by the crate `gltf` (1.4): its validation panics on a file
-//! whose POSITION refers to a missing accessor, its accessors do unchecked sums, and it keeps node transforms at single
-//! precision.
+//! Read with `serde_json`. The crate `gltf` (1.4) is not used: its validation panics if POSITION refers to a missing accessor, its accessors
+//! do unchecked arithmetic, and it keeps node transforms in single precision.
 //!
 //! Read: the triangles, strips and fans of all nodes of the scene (or of the first scene; without
 //! scenes of all nodes; without nodes all meshes as they stand), moved by the nodes' transforms in f64.
-//! An instance of a mesh becomes vertices of its own. Points and lines, materials and animations are passed over.
-//! Morph targets count as unweighted. A skinned mesh is taken in its base pose, that is, as its
-//! vertices are stored: by the specification, the transform of its node does not apply to it.
+//! Each instance of a mesh has its own vertices. Points, lines, materials and animations are ignored. Morph targets have zero
+//! weight. A skinned mesh is read in its base pose, as its vertices are stored: by the specification, the transform of its node does
+//! not apply.
 
 mod data;
 mod schema;
@@ -25,15 +24,15 @@ use super::text::check_text;
 use data::{Buffers, error, get};
 use schema::{Document, Node, Primitive};
 
-/// The largest JSON part. Beyond it, the few bytes of an entry would grow to gigabytes of entries.
+/// The largest JSON part (bytes): parsed entries take much more memory than their text.
 const MAX_JSON: usize = 128 << 20;
-/// Extensions that change where vertices are or what they mean, and are understood.
-const UNDERSTOOD: [&str; 1] = ["KHR_mesh_quantization"];
-/// Extensions of these families leave the geometry as it is.
-const HARMLESS: [&str; 6] =
+/// Supported extensions that affect vertices.
+const SUPPORTED_EXTENSIONS: [&str; 1] = ["KHR_mesh_quantization"];
+/// Families of extensions that do not affect geometry.
+const IGNORED_EXTENSIONS: [&str; 6] =
     ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp", "MSFT_texture_"];
 
-/// Reads the bytes of a glTF file; `folder` is where its side files lie.
+/// Reads the bytes of a glTF file; `folder` holds its side files.
 pub(super) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Parsed, ReadError> {
     let (json, binary_chunk) = split(bytes)?;
     if json.len() > MAX_JSON {
@@ -109,8 +108,8 @@ fn check_version(document: &Document<'_>) -> Result<(), ReadError> {
         )));
     }
     let unknown = document.extensions_required.iter().find(|name| {
-        !UNDERSTOOD.contains(&name.as_str())
-            && !HARMLESS.iter().any(|family| name.starts_with(family))
+        !SUPPORTED_EXTENSIONS.contains(&name.as_str())
+            && !IGNORED_EXTENSIONS.iter().any(|family| name.starts_with(family))
     });
     match unknown {
         None => Ok(()),
@@ -150,11 +149,11 @@ impl<'a> Scene<'a> {
         let document = self.document;
         if document.nodes.is_empty() {
             return (0..document.meshes.len())
-                .try_for_each(|mesh| self.place(mesh, DAffine3::IDENTITY));
+                .try_for_each(|mesh| self.add_mesh(mesh, DAffine3::IDENTITY));
         }
         let mut seen = vec![false; document.nodes.len()];
         let roots = self.roots()?;
-        // the children that are still to be visited, and the transform of their parent
+        // remaining children and transform of each parent on the path
         let mut levels = vec![(roots.iter(), DAffine3::IDENTITY)];
         while let Some((siblings, parent)) = levels.last_mut() {
             let Some(&index) = siblings.next() else {
@@ -169,8 +168,8 @@ impl<'a> Scene<'a> {
             }
             let transform = *parent * local_transform(node, index)?;
             match (node.mesh, node.skin) {
-                (Some(mesh), None) => self.place(mesh as usize, transform)?,
-                (Some(mesh), Some(_)) => self.place(mesh as usize, DAffine3::IDENTITY)?,
+                (Some(mesh), None) => self.add_mesh(mesh as usize, transform)?,
+                (Some(mesh), Some(_)) => self.add_mesh(mesh as usize, DAffine3::IDENTITY)?,
                 (None, _) => {}
             }
             levels.push((node.children.iter(), transform));
@@ -192,31 +191,31 @@ impl<'a> Scene<'a> {
         Ok((0..is_child.len()).filter(|&node| !is_child[node]).collect())
     }
 
-    /// Adds a mesh where its node puts it.
-    fn place(&mut self, mesh: usize, transform: DAffine3) -> Result<(), ReadError> {
+    /// Adds an instance of a mesh.
+    fn add_mesh(&mut self, mesh: usize, transform: DAffine3) -> Result<(), ReadError> {
         let mesh = get(&self.document.meshes, mesh, "mesh")?;
         self.object_count += 1;
         // primitives may share their vertices
         let mut first_of = BTreeMap::new();
         for primitive in &mesh.primitives {
-            self.spend(1)?;
+            self.charge(1)?;
             let Some(position) = primitive.attributes.position else { continue };
             if !(4..=6).contains(&primitive.mode) {
                 continue;
             }
             let first = match first_of.get(&position) {
                 Some(&first) => first,
-                None => self.place_vertices(position, transform)?,
+                None => self.add_vertices(position, transform)?,
             };
             first_of.insert(position, first);
-            self.place_faces(primitive, position, first, transform.matrix3.determinant() < 0.0)?;
+            self.add_faces(primitive, position, first, transform.matrix3.determinant() < 0.0)?;
         }
         Ok(())
     }
 
-    fn place_vertices(&mut self, position: usize, transform: DAffine3) -> Result<usize, ReadError> {
+    fn add_vertices(&mut self, position: usize, transform: DAffine3) -> Result<usize, ReadError> {
         self.buffers.load(position)?;
-        self.spend(self.buffers.count(position)?)?;
+        self.charge(self.buffers.count(position)?)?;
         let first = self.vertices.len();
         for vertex in self.buffers.positions(position)? {
             let vertex = transform.transform_point3(vertex);
@@ -231,7 +230,7 @@ impl<'a> Scene<'a> {
         Ok(first)
     }
 
-    fn place_faces(
+    fn add_faces(
         &mut self,
         primitive: &Primitive,
         position: usize,
@@ -240,7 +239,7 @@ impl<'a> Scene<'a> {
     ) -> Result<(), ReadError> {
         let vertex_count = self.buffers.count(position)?;
         let count = primitive.indices.map_or(Ok(vertex_count), |i| self.buffers.count(i))?;
-        self.spend(count)?;
+        self.charge(count)?;
         let mut corners = match primitive.indices {
             Some(indices) => {
                 self.buffers.load(indices)?;
@@ -271,13 +270,13 @@ impl<'a> Scene<'a> {
             }),
         }
         if mirrored {
-            self.faces.turn_from(start);
+            self.faces.reverse_from(start);
         }
         Ok(())
     }
 
-    /// Instances can make much of little: keeps the whole in proportion to the files.
-    fn spend(&mut self, work: usize) -> Result<(), ReadError> {
+    /// Counts work against a limit in proportion to the file size, since instances multiply the data.
+    fn charge(&mut self, work: usize) -> Result<(), ReadError> {
         self.work = self.work.saturating_add(work);
         let limit = (2 * (self.file_length + self.buffers.side_bytes())).max(1_000_000);
         if self.work > limit {

@@ -1,9 +1,8 @@
 //! Meshes from files: OBJ, STL, PLY and glTF.
 //!
-//! The vertices of a mesh are the particles of a body, so it matters which ones a file gives:
+//! The vertices of a mesh are the particles of a body, so each format states which vertices it keeps:
 //!
-//! - **OBJ and PLY keep the file's vertices as they are**, all of them and in the file's order, also those that
-//!   no face uses.
+//! - **OBJ and PLY keep all vertices of the file** in its order, including those that no face uses.
 //! - **STL and glTF weld exact duplicates**, because these formats repeat a vertex for each triangle or seam;
 //!   see [`weld`].
 //!
@@ -23,8 +22,8 @@
 //! `parse` that returns `Parsed`, and call it in [`parse_mesh`]. Then add samples to `tests/mesh_formats`
 //! and a target to `fuzz/targets`.
 //!
-//! Every reader takes any bytes at all: it gives a mesh or a [`ReadError`], in memory and time that are in
-//! proportion to the size of the file. Lengths are taken as they stand: a file has no unit, tumble's is the metre.
+//! Every reader accepts arbitrary bytes and returns a mesh or a [`ReadError`], in memory and time proportional to the size of the
+//! file. Lengths are in metres: the numbers of a file are used as they are.
 
 mod error;
 mod file;
@@ -47,7 +46,7 @@ use tumble::Mesh;
 pub use error::{Place, ReadError};
 pub use format::Format;
 
-/// A mesh, and what there is to know about the file it came from.
+/// A mesh, with information about its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
     /// The mesh: at least one vertex, all finite, all triangles in range.
@@ -56,22 +55,22 @@ pub struct MeshFile {
     pub format: Format,
     /// SHA-256 of the file's bytes, lower-case hexadecimal. Side files of a glTF are not part of it.
     pub sha256: String,
-    /// Objects in the file, at least 1: `o` statements (or else `g`) of an OBJ, solids of an STL, nodes with
+    /// Number of objects in the file, at least 1: `o` statements (or else `g`) of an OBJ, solids of an STL, nodes with
     /// a mesh of a glTF.
     pub object_count: usize,
-    /// Vertices in the file, before any welding.
+    /// Number of vertices in the file, before welding.
     pub file_vertex_count: usize,
-    /// Faces in the file, of any number of corners.
+    /// Number of faces in the file, with any number of corners.
     pub face_count: usize,
     /// Whether exact duplicates were welded.
     pub welded: bool,
 }
 
-/// Reads a mesh file; its extension tells the format. `weld` overrides the format's default (see the
+/// Reads a mesh file; the extension determines the format. `weld` overrides the format's default (see the
 /// [module](self)).
 ///
 /// # Errors
-/// [`ReadError`] when the path is no regular file of a known extension and at most 4 GiB, or its content is no
+/// [`ReadError`] if the path is not a regular file of a known extension of at most 4 GiB, or if its content is not a
 /// mesh.
 pub fn read_mesh(path: &Path, weld: Option<bool>) -> Result<MeshFile, ReadError> {
     let read = || {
@@ -83,10 +82,10 @@ pub fn read_mesh(path: &Path, weld: Option<bool>) -> Result<MeshFile, ReadError>
     read().map_err(|error: ReadError| error.with_path(path))
 }
 
-/// Reads a mesh from bytes. `folder` is where the side files of a glTF lie; without one, they are an error.
+/// Reads a mesh from bytes. `folder` holds the side files of a glTF; without it, side files are an error.
 ///
 /// # Errors
-/// [`ReadError`], without a path, when the bytes are no mesh.
+/// [`ReadError`], without a path, if the bytes are not a mesh.
 pub fn parse_mesh(
     format: Format,
     bytes: &[u8],
@@ -126,12 +125,12 @@ pub fn parse_mesh(
 
 /// Merges vertices that are exactly equal (0 and -0 are), in the order of their first occurrence.
 ///
-/// Triangles are renumbered. One that has the same vertex twice is dropped: it has no area, and no
-/// direction. There is no tolerance: vertices that differ in the last bit stay two.
+/// Triangles are renumbered. A triangle with the same vertex twice has no area and is dropped. There is no tolerance: vertices that
+/// differ in the last bit stay separate.
 pub fn weld(mesh: Mesh) -> Mesh {
     let mut first_of: HashMap<[u64; 3], u32> = HashMap::new();
     let mut vertices = Vec::new();
-    // the new number of each vertex
+    // the new index of each vertex
     let renumbered: Vec<u32> = mesh
         .vertices
         .iter()
@@ -147,7 +146,7 @@ pub fn weld(mesh: Mesh) -> Mesh {
             }
         })
         .collect();
-    // triangles, without those that have no area left
+    // drop triangles without area
     let triangles = mesh
         .triangles
         .iter()

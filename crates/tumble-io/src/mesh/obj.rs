@@ -1,13 +1,11 @@
 //! Wavefront OBJ, text.
 //!
-//! Read here and not by the crate `tobj`, because tobj makes a mesh for drawing: it drops the vertices that no
-//! face uses, orders the others by their first use, splits the file at each object, and gives single
-//! precision unless it is built otherwise. Here the particles *are* the file's `v` lines: all of them, in
-//! the file's order, at double precision.
+//! The crate `tobj` is not used, because it makes meshes for drawing: it drops vertices that no face uses, orders the others by
+//! their first use, splits the file at each object, and reads single precision by default. Here the particles are the `v` lines of the file: all
+//! of them, in order, in double precision.
 //!
 //! Read: `v`, `f` (polygons of any size, negative indices, `v`, `v/vt`, `v//vn`, `v/vt/vn`), `o` and `g`
-//! (counted). A weight or a colour behind a position is passed over, and so is any other statement. A face may
-//! come before its vertices.
+//! (counted). Weights and colours after a position are ignored, and so are all other statements. A face may come before its vertices.
 
 use glam::DVec3;
 
@@ -34,7 +32,7 @@ struct Reader<'a> {
     words: Words<'a>,
     vertices: Vec<DVec3>,
     faces: Faces,
-    /// The corners of the face at hand.
+    /// The corners of the current face.
     corners: Vec<u32>,
     /// The largest index of any face, from 0, and where it is.
     largest: Option<(u32, Place)>,
@@ -67,7 +65,7 @@ impl<'a> Reader<'a> {
                 self.group_count += 1;
                 Ok(())
             }
-            // any other statement has nothing to say about particles
+            // other statements do not affect particles
             _ if is_plausible(keyword) => Ok(()),
             _ => Err(self.words.error(format!(
                 "{} is no OBJ statement (such as v, f, o); is this an OBJ file?",
@@ -166,13 +164,13 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A keyword of this or another dialect: a word of letters, digits, `_` and `-`.
+/// Whether a word may be a keyword of some dialect: letters, digits, `_` and `-`.
 fn is_plausible(keyword: &[u8]) -> bool {
     keyword[0].is_ascii_alphabetic()
         && keyword.iter().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'_' | b'-'))
 }
 
-/// What may follow the vertex of a corner: nothing, `/vt`, `//vn` or `/vt/vn`.
+/// Whether the text after the vertex of a corner is valid: nothing, `/vt`, `//vn` or `/vt/vn`.
 fn is_texture_and_normal(rest: &[u8]) -> bool {
     let mut slashes = 0;
     for byte in rest {
@@ -185,7 +183,7 @@ fn is_texture_and_normal(rest: &[u8]) -> bool {
     slashes <= 2
 }
 
-/// A whole number; one that is too large becomes the largest.
+/// A whole number, saturated at the largest one.
 fn parse_integer(word: &[u8]) -> Option<i64> {
     let (negative, digits) = match word {
         [b'-', digits @ ..] => (true, digits),

@@ -1,12 +1,10 @@
 //! PLY, text and binary of either byte order.
 //!
-//! Read here and not by the crate `ply-rs-bw` (4.0), which refuses numbers such as `1.` and `.5` that real
-//! files have, lets a header of one line ask for any number of elements without properties, and names no
-//! byte in its errors.
+//! The crate `ply-rs-bw` (4.0) is not used: it rejects numbers such as `1.` and `.5` that occur in practice, lets a header request any
+//! number of elements without properties, and reports no byte in its errors.
 //!
 //! Read: the properties x, y, z of the element `vertex` (of any scalar type), the list `vertex_indices` or
-//! `vertex_index` of the elements `face` and `tristrips`. All else is passed over. A file without faces
-//! is a point cloud.
+//! `vertex_index` of the elements `face` and `tristrips`. Everything else is skipped. A file without faces is a point cloud.
 
 mod header;
 
@@ -25,30 +23,30 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
     let header = Header::read(&mut words)?;
     header.check_size(bytes.len() - words.offset(), &words)?;
     let vertex_count = header.vertex_count().map_err(|message| words.line_error(message))?;
-    let mut sink = Sink { vertex_count, ..Default::default() };
+    let mut collector = MeshCollector { vertex_count, ..Default::default() };
     match header.encoding {
         Encoding::Text => {
             let mut source = TextSource { words };
-            sink.read(&header, &mut source)?;
+            collector.read(&header, &mut source)?;
             source.check_end()?;
         }
         Encoding::Binary { big_endian } => {
             let at = words.offset();
-            sink.read(&header, &mut BinarySource { bytes, at, value_at: at, big_endian })?;
+            collector.read(&header, &mut BinarySource { bytes, at, value_at: at, big_endian })?;
         }
     }
-    let face_count = sink.faces.count;
-    let triangles = sink.faces.finish(&sink.vertices);
-    Ok(Parsed { vertices: sink.vertices, triangles, face_count, object_count: 1 })
+    let face_count = collector.faces.count;
+    let triangles = collector.faces.finish(&collector.vertices);
+    Ok(Parsed { vertices: collector.vertices, triangles, face_count, object_count: 1 })
 }
 
-/// Where the values of the elements come from.
+/// A source of element values, text or binary.
 trait Source {
     /// Goes to the next element (in text: the next line).
     fn begin(&mut self) -> Result<(), ReadError>;
-    /// A number, as a double: all scalar types fit.
+    /// A number, as a double, which holds all scalar types.
     fn value(&mut self, scalar: Scalar) -> Result<f64, ReadError>;
-    /// Passes over a value.
+    /// Skips a value.
     fn skip(&mut self, scalar: Scalar) -> Result<(), ReadError>;
     /// Checks that the element ends here.
     fn end(&mut self) -> Result<(), ReadError>;
@@ -86,7 +84,7 @@ impl TextSource<'_> {
 
 impl Source for TextSource<'_> {
     fn begin(&mut self) -> Result<(), ReadError> {
-        // pass over empty lines
+        // skip empty lines
         loop {
             let mut ahead = self.words.clone();
             if ahead.next_word().is_some() {
@@ -128,7 +126,7 @@ impl Source for TextSource<'_> {
 struct BinarySource<'a> {
     bytes: &'a [u8],
     at: usize,
-    /// Where the last value begins.
+    /// Offset of the last value.
     value_at: usize,
     big_endian: bool,
 }
@@ -181,17 +179,17 @@ impl Source for BinarySource<'_> {
     }
 }
 
-/// Takes the elements one by one.
+/// Collects vertices and faces from the elements.
 #[derive(Default)]
-struct Sink {
+struct MeshCollector {
     vertex_count: u32,
     vertices: Vec<DVec3>,
     faces: Faces,
-    /// The corners of the face at hand.
+    /// The corners of the current face.
     corners: Vec<u32>,
 }
 
-/// What a property of an element is good for.
+/// The meaning of a property of an element.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
     Axis(usize),
@@ -199,10 +197,10 @@ enum Role {
     None,
 }
 
-impl Sink {
+impl MeshCollector {
     fn read(&mut self, header: &Header, source: &mut impl Source) -> Result<(), ReadError> {
         for element in &header.elements {
-            // without properties there is nothing to read, however many are promised
+            // an element without properties has no data, whatever its count
             if !element.properties.is_empty() {
                 self.read_elements(element, source)?;
             }

@@ -1,8 +1,8 @@
-//! Polygons and strips become triangles.
+//! Triangulation of polygons and strips.
 
 use glam::{DVec2, DVec3};
 
-/// How many corner tests all the concave polygons of one file may cost together (about a second).
+/// The largest number of corner tests for all concave polygons of one file (about a second).
 const CLIP_BUDGET: u64 = 200_000_000;
 
 /// Collects faces of any size. Each is a fan at first; when all vertices are known, [`Faces::finish`]
@@ -17,7 +17,7 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    /// Takes a face; one of less than three corners is nothing.
+    /// Adds a face; a face of fewer than three corners has no triangles.
     pub(super) fn push(&mut self, corners: &[u32]) {
         self.count += 1;
         // most faces are triangles
@@ -33,20 +33,20 @@ impl Faces {
         }
     }
 
-    /// Takes a triangle strip; each second triangle is turned, so that all face the same way.
+    /// Adds a triangle strip; every second triangle is reversed, so that all have the same winding.
     pub(super) fn push_strip(&mut self, strip: &[u32]) {
         for (i, t) in strip.windows(3).enumerate() {
             self.push(&if i % 2 == 0 { [t[0], t[1], t[2]] } else { [t[0], t[2], t[1]] });
         }
     }
 
-    /// Triangles so far.
+    /// Number of triangles so far.
     pub(super) fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Turns the triangles from the given one on inside out, as a mirror does.
-    pub(super) fn turn_from(&mut self, first: usize) {
+    /// Reverses the winding of all triangles from the given one on.
+    pub(super) fn reverse_from(&mut self, first: usize) {
         self.triangles[first..].iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
 
@@ -72,8 +72,8 @@ struct Clipper {
 }
 
 impl Clipper {
-    /// Replaces a fan by a better triangulation if its polygon is concave and simple.
-    /// A fan that can not be improved stays: its signed volume is right all the same.
+    /// Replaces a fan by an ear-clipped triangulation if its polygon is concave and simple. Otherwise the fan stays: its signed volume is
+    /// correct in any case.
     fn improve(&mut self, fan: &mut [[u32; 3]], vertices: &[DVec3]) {
         // the corners, from the fan
         self.corners.clear();
@@ -103,7 +103,7 @@ impl Clipper {
         fan.copy_from_slice(&self.ears);
     }
 
-    /// Looks at the polygon along its normal (Newell), onto the plane of two axes.
+    /// Projects the polygon along the axis nearest to its normal (Newell).
     fn flatten(&mut self, vertices: &[DVec3]) {
         let at = |i: u32| vertices[i as usize];
         let origin = at(self.corners[0]);
@@ -139,7 +139,7 @@ impl Clipper {
         [self.ring[(i + n - 1) % n], self.ring[i], self.ring[(i + 1) % n]]
     }
 
-    /// Whether the triangle at corner `i` may be cut off: it turns left and no other corner is in it.
+    /// Whether the triangle at corner `i` is an ear: it is convex and contains no other corner.
     fn is_ear(&mut self, i: usize) -> bool {
         let [a, b, c] = self.corner(i).map(|k| self.points[k]);
         let cost = self.ring.len() as u64;

@@ -1,10 +1,10 @@
 //! STL, text and binary.
 //!
-//! Read here and not by the crate `stl_io` (0.11), which takes each file that begins with `solid ` for text,
-//! though many binary files do, names no line or byte in its errors, and rounds text to single precision.
+//! The crate `stl_io` (0.11) is not used: it reads every file that begins with `solid ` as text, although many binary files do, reports
+//! no line or byte in its errors, and rounds text to single precision.
 //!
-//! A file is binary exactly when its length is what its count of triangles demands (84 + 50 n bytes).
-//! Normals, attributes and colours are passed over. The solids of a text make one mesh.
+//! A file is binary if and only if its length matches its number of triangles n (84 + 50 n bytes). Normals, attributes and
+//! colours are ignored. All solids of a text file form one mesh.
 
 use glam::DVec3;
 
@@ -19,16 +19,16 @@ const TRIANGLE: usize = 50;
 
 /// Reads the bytes of an STL file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
-    // a binary file may well begin with "solid", so that its size decides
-    let promised = promised_triangles(bytes);
-    if promised.is_some_and(|count| bytes.len() as u64 == binary_size(count)) {
+    // a binary file may begin with "solid", so its size decides
+    let declared = declared_triangles(bytes);
+    if declared.is_some_and(|count| bytes.len() as u64 == binary_size(count)) {
         return parse_binary(bytes);
     }
     if begins_with_solid(bytes) && check_text(bytes, "STL").is_ok() {
         return parse_text(bytes);
     }
     let length = bytes.len();
-    let message = match promised {
+    let message = match declared {
         None => format!(
             "the file has only {length} bytes; an STL begins with `solid` (text) or has at least {HEADER} bytes (binary)"
         ),
@@ -42,10 +42,10 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
             }
         ),
     };
-    Err(ReadError::new(promised.map(|_| Place::Byte(80)), message))
+    Err(ReadError::new(declared.map(|_| Place::Byte(80)), message))
 }
 
-fn promised_triangles(bytes: &[u8]) -> Option<u32> {
+fn declared_triangles(bytes: &[u8]) -> Option<u32> {
     let count = bytes.get(80..HEADER)?.first_chunk()?;
     Some(u32::from_le_bytes(*count))
 }
@@ -121,14 +121,14 @@ fn parse_text(bytes: &[u8]) -> Result<Parsed, ReadError> {
     soup.finish(solid_count)
 }
 
-/// Triangles without shared vertices, three vertices each.
+/// Triangles without shared vertices, three vertices each (a triangle soup).
 #[derive(Default)]
 struct Soup {
     vertices: Vec<DVec3>,
 }
 
 impl Soup {
-    /// Outside of a loop, all triangles have their three corners.
+    /// Checks that every triangle has three corners; to be called outside of loops.
     fn check_whole(&self, words: &Words<'_>) -> Result<(), ReadError> {
         if self.vertices.len().is_multiple_of(3) {
             return Ok(());

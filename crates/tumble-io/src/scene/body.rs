@@ -11,16 +11,16 @@ use super::reader::{Range, Reader};
 use super::shape::{SHAPE_KEYS, shape_scene};
 use super::surface::surface;
 
-/// The keys that say how heavy a body is; only one may be given.
+/// Keys that give the mass; only one may be given.
 pub const MASS_KEYS: [&str; 3] = ["particle_mass", "mass", "density"];
 
-/// More characters than this are no name.
-const LONGEST_NAME: usize = 200;
+/// The largest number of characters in a name.
+const MAX_NAME_LENGTH: usize = 200;
 
-/// More bodies than this are a slip of the keyboard.
+/// The largest number of bodies in a scene.
 pub const MAX_COPIES: u64 = 1_000_000;
 
-/// Reads body number `index`; defaults take the place of what cannot be made sense of.
+/// Reads body number `index`. Invalid values are replaced by defaults.
 pub fn body(reader: Reader, index: usize) -> BodyScene {
     let geometry = geometry(&reader);
     let name = match reader.string("name") {
@@ -33,8 +33,8 @@ pub fn body(reader: Reader, index: usize) -> BodyScene {
             reader.problem("name", "must not contain commas, quotes, line breaks or the like");
             name.to_owned()
         }
-        Some(name) if name.chars().nth(LONGEST_NAME).is_some() => {
-            reader.problem("name", format!("must have at most {LONGEST_NAME} characters"));
+        Some(name) if name.chars().nth(MAX_NAME_LENGTH).is_some() => {
+            reader.problem("name", format!("must have at most {MAX_NAME_LENGTH} characters"));
             String::new()
         }
         Some(name) => name.to_owned(),
@@ -73,7 +73,7 @@ fn geometry(reader: &Reader) -> Option<Geometry> {
         }
         Some("shape") => {
             let shape = shape_scene(reader).map(Geometry::Shape);
-            // of an unknown shape, nobody knows the keys
+            // the keys of an unknown shape cannot be checked
             if shape.is_none() {
                 reader.mark_known(&SHAPE_KEYS);
             }

@@ -18,7 +18,7 @@ macro_rules! builtin {
     };
 }
 
-/// All built-in scenes, in the order in which they teach.
+/// All built-in scenes, in teaching order.
 pub const BUILTIN: [Builtin; 18] = builtin![
     "task1",
     "task2",

@@ -38,6 +38,6 @@ pub fn orientation(reader: &Reader) -> DQuat {
         return DQuat::IDENTITY;
     }
     let q = DQuat::from_xyzw(x, y, z, w);
-    // one that is normalised already keeps its bits
+    // do not normalise twice: the bits would change
     if is_unit(q.length_squared()) { q } else { (q / largest).normalize() }
 }

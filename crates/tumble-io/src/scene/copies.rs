@@ -12,15 +12,15 @@ impl Copies {
 
     /// Position (m) and orientation of every copy relative to those of the body.
     pub fn poses(&self) -> Vec<(DVec3, DQuat)> {
-        let middle = DVec3::from_array(self.count.map(|n| 0.5 * (f64::from(n) - 1.0)));
+        let centre = DVec3::from_array(self.count.map(|n| 0.5 * (f64::from(n) - 1.0)));
         let mut random = self.seed.map(SplitMix64);
         let mut poses = Vec::new();
         for k in 0..self.count[2] {
             for j in 0..self.count[1] {
                 for i in 0..self.count[0] {
-                    let at = DVec3::new(f64::from(i), f64::from(j), f64::from(k)) - middle;
-                    let turn = random.as_mut().map_or(DQuat::IDENTITY, SplitMix64::rotation);
-                    poses.push((at * self.spacing, turn));
+                    let offset = DVec3::new(f64::from(i), f64::from(j), f64::from(k)) - centre;
+                    let rotation = random.as_mut().map_or(DQuat::IDENTITY, SplitMix64::rotation);
+                    poses.push((offset * self.spacing, rotation));
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! A scene as data: what a file says, with every default filled in.
+//! A scene as data, with all defaults filled in.
 
 use std::path::PathBuf;
 
@@ -11,12 +11,12 @@ use tumble::{
 pub const MASS_MODELS: [(&str, MassModel); 3] =
     [("particles", MassModel::Particles), ("shell", MassModel::Shell), ("solid", MassModel::Solid)];
 
-/// What to simulate, and what to write of it.
+/// A scene: the simulation and its output.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Name of the file without its ending, or of the built-in scene.
     pub name: String,
-    /// One line for people.
+    /// One line of description.
     pub description: Option<String>,
     /// Simulated time (s).
     pub duration: f64,
@@ -28,11 +28,11 @@ pub struct Scene {
     pub gravity: DVec3,
     /// Drag c of the medium on every particle (N·s/m).
     pub velocity_damping_stiffness: f64,
-    /// Refine steps in contact until less of the energy in play than this is unaccounted for.
+    /// Bound on the energy error of a sub-step in contact, relative to kinetic and elastic energy.
     pub energy_tolerance: Option<f64>,
-    /// The material of contacts that neither wall nor body says otherwise about.
+    /// Default material of contacts.
     pub collision: Material,
-    /// What is done about bodies that start in each other.
+    /// How bodies that overlap at the start are treated.
     pub overlaps: Overlaps,
     /// The box, if there is one.
     pub box_walls: Option<BoxScene>,
@@ -40,9 +40,9 @@ pub struct Scene {
     pub walls: Vec<WallScene>,
     /// The bodies, before copies.
     pub bodies: Vec<BodyScene>,
-    /// What to write.
+    /// Output settings.
     pub output: OutputScene,
-    /// Accept a step above the critical one: said by the caller, not by the file.
+    /// Accept a time step above the critical one; set by the caller, not by the file.
     pub force: bool,
 }
 
@@ -75,11 +75,11 @@ pub struct BodyScene {
     pub scale: f64,
     /// Which points of the mesh become particles.
     pub sampling: Sampling,
-    /// How the mass is spread.
+    /// How the mass is distributed.
     pub mass_model: MassModel,
-    /// How much mass there is.
+    /// The mass.
     pub mass: MassScene,
-    /// Centre of mass at the start (m); `None`: where the coordinates say.
+    /// Centre of mass at the start (m); `None`: that of the coordinates.
     pub position: Option<DVec3>,
     /// Orientation at the start.
     pub orientation: DQuat,
@@ -89,11 +89,11 @@ pub struct BodyScene {
     pub initial_angular_velocity: DVec3,
     /// Its own material.
     pub material: MaterialOverride,
-    /// What other bodies meet of it.
+    /// Its contact surface.
     pub surface: Surface,
-    /// What moves it.
+    /// Its motion.
     pub motion: MotionScene,
-    /// How often and where it is repeated.
+    /// Its copies.
     pub copies: Option<Copies>,
 }
 
@@ -106,7 +106,7 @@ pub enum Geometry {
         path: PathBuf,
         /// SHA-256 of the file, lower-case hexadecimal, known once it is read.
         sha256: String,
-        /// Whether exact duplicates among its vertices are merged; `None`: as the format suggests.
+        /// Whether exact duplicates among its vertices are merged; `None`: the default of the format.
         weld: Option<bool>,
     },
     /// A built-in shape.
@@ -134,29 +134,29 @@ impl ShapeScene {
     }
 }
 
-/// The key that says how much mass a body has.
+/// The key that gives the mass of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MassScene {
-    /// `particle_mass`: kg in each particle.
+    /// `particle_mass`: mass of each particle (kg).
     Particle(f64),
-    /// `mass`: kg in all.
+    /// `mass`: total mass (kg).
     Total(f64),
     /// `density`: kg/m³ of the enclosed volume, or kg/m² of the surface for a shell.
     Density(f64),
 }
 
-/// The key that says what moves a body.
+/// The motion of a body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum MotionScene {
-    /// `"free"`: forces.
+    /// `"free"`: moved by forces.
     #[default]
     Free,
-    /// `"fixed"`: it stands still.
+    /// `"fixed"`: does not move.
     Fixed {
         /// Velocity of its surface along itself (m/s, body axes).
         surface_velocity: DVec3,
     },
-    /// `"prescribed"`: it keeps the velocities that it starts with.
+    /// `"prescribed"`: keeps its initial velocities.
     Prescribed(Prescribed),
 }
 
@@ -170,7 +170,7 @@ impl MotionScene {
         }
     }
 
-    /// As the physics takes it.
+    /// The motion as the physics uses it.
     pub fn motion(&self) -> Motion {
         match *self {
             Self::Free => Motion::Free,
@@ -185,7 +185,7 @@ impl MotionScene {
 /// `copies`: a lattice of bodies, centred on the body's place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Copies {
-    /// How many along x, y and z.
+    /// Number of copies along x, y and z.
     pub count: [u32; 3],
     /// Distance between neighbours along x, y and z (m).
     pub spacing: DVec3,
@@ -198,7 +198,7 @@ pub struct Copies {
 pub struct OutputScene {
     /// Time between frames (s).
     pub interval: f64,
-    /// Simulated time between checkpoints (s), on top of those that the clock asks for.
+    /// Simulated time between checkpoints (s), in addition to those by wall-clock time.
     pub checkpoint_interval: Option<f64>,
 }
 
@@ -209,7 +209,7 @@ impl Default for OutputScene {
 }
 
 impl Scene {
-    /// Whether something may put energy in: a body that moves by itself, or a belt.
+    /// Whether a body may do work: a prescribed motion or a surface velocity.
     pub fn does_work(&self) -> bool {
         let moves = |body: &BodyScene| match body.motion {
             MotionScene::Free => false,
@@ -219,14 +219,14 @@ impl Scene {
         self.bodies.iter().any(moves)
     }
 
-    /// Whether there are several bodies, none of which has a surface that others could meet.
+    /// Whether there are several bodies, none of which has a contact surface.
     pub fn bodies_pass_through(&self) -> bool {
         let count: u64 =
             self.bodies.iter().map(|b| b.copies.as_ref().map_or(1, Copies::total)).sum();
         count > 1 && self.bodies.iter().all(|body| body.surface == Surface::None)
     }
 
-    /// How many steps the run takes: the whole number nearest to duration/dt.
+    /// Number of steps of the run: the integer nearest to duration/dt.
     pub fn step_count(&self) -> u64 {
         (self.duration / self.dt).round() as u64
     }
@@ -241,7 +241,7 @@ impl Scene {
         step == 0 || self.next_frame(step - 1) == step
     }
 
-    /// The first step after `step` that has a checkpoint, if the scene asks for any.
+    /// The first step after `step` that has a checkpoint, if the scene requests any.
     pub fn next_checkpoint(&self, step: u64) -> Option<u64> {
         self.output.checkpoint_interval.map(|interval| self.next_of(interval, step))
     }

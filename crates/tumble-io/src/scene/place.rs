@@ -5,7 +5,7 @@ use std::ops::Range;
 /// A text that a scene was read from.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// What to call it: the file's path, or `--set`.
+    /// Its name in messages: the path of the file, or `--set`.
     pub name: String,
     /// The text.
     pub text: String,

@@ -1,4 +1,4 @@
-//! What is wrong with a scene, and where.
+//! Problems of a scene and their places.
 
 use std::ops::Range;
 
@@ -7,10 +7,10 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use super::place::{Place, Source};
 
-/// More problems than this are counted, not shown.
+/// The largest number of problems shown; others are counted.
 const MAX_SHOWN: usize = 100;
 
-/// One thing that is wrong.
+/// One problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     place: Place,
@@ -25,14 +25,14 @@ impl Problem {
         Self { place, key: key.into(), message: message.into(), help: None }
     }
 
-    /// Adds what to do about it.
+    /// Adds a hint.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 }
 
-/// Everything that is wrong with a scene.
+/// All problems of a scene.
 #[derive(Clone, Debug)]
 pub struct SceneError {
     sources: Vec<Source>,
@@ -46,12 +46,12 @@ impl SceneError {
         Self { sources, problems }
     }
 
-    /// How many problems there are.
+    /// Number of problems.
     pub fn problem_count(&self) -> usize {
         self.problems.len()
     }
 
-    /// What is wrong in words alone, one entry a problem, for where there is no text to point at.
+    /// The messages without source text, one per problem.
     pub fn messages(&self) -> Vec<String> {
         let words = |problem: &Problem| {
             let message = cut(&problem.message, 2000);
@@ -115,7 +115,7 @@ fn on_characters(text: &str, span: Range<usize>) -> Range<usize> {
     while !text.is_char_boundary(end) {
         end += 1;
     }
-    // a table or a long array would quote the whole of itself
+    // do not quote a whole table or long array
     let line_end = text[start..end].find('\n').map_or(end, |at| start + at);
     start..line_end
 }
@@ -130,8 +130,8 @@ fn cut(text: &str, most: usize) -> String {
     cut
 }
 
-/// The line in which a span lies, its number from 1, and the span within it. Only this line is
-/// handed to the renderer, which would otherwise look through the whole text for every problem.
+/// The line in which a span lies, its number from 1, and the span within it. Only this line goes
+/// to the renderer, which would otherwise scan the whole text for every problem.
 fn line_of(text: &str, span: Range<usize>) -> (&str, usize, Range<usize>) {
     let start = text[..span.start].rfind('\n').map_or(0, |at| at + 1);
     let number = text[..start].bytes().filter(|&byte| byte == b'\n').count() + 1;
@@ -176,7 +176,7 @@ mod tests {
     fn very_many_problems_are_counted() {
         let at = |start| Place { source: 0, span: start..start + 1 };
         let problems = (0..150).rev().map(|i| Problem::new(at(i), format!("k{i}"), "is wrong"));
-        // the same problem twice is one
+        // report equal problems once
         let problems = problems.chain([Problem::new(at(0), "k0", "is wrong")]).collect();
         let source = Source { name: "s".to_owned(), text: "x".repeat(150) };
         let error = SceneError::new(vec![source], problems);

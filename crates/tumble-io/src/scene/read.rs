@@ -11,11 +11,11 @@ use super::problem::Problem;
 use super::reader::{Range, Reader};
 use super::tree::Node;
 
-/// More steps than a double can count cannot be meant.
+/// The largest number of steps: more than a double can count exactly is an error.
 const MAX_STEPS: f64 = 9e15;
 
-/// Reads a whole scene; what is wrong goes to `problems`, and a default takes its place.
-/// The second value says of each body whether nothing was wrong with it.
+/// Reads a whole scene. Problems go to `problems`; invalid values are replaced by defaults. The second value tells for each body whether it
+/// was read without a problem.
 pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Scene, Vec<bool>) {
     let top = Reader::new(root, String::new(), problems);
     let duration = top.number("duration", Range::NotNegative).unwrap_or(3.0);
@@ -38,7 +38,7 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
     };
     let box_walls = top.table("box").and_then(box_walls);
     let walls = top.tables("wall").into_iter().filter_map(wall).collect();
-    let (bodies, sound) = bodies(&top, problems);
+    let (bodies, is_valid) = bodies(&top, problems);
     let scene = Scene {
         name,
         description: top.string("description").map(str::to_owned),
@@ -62,10 +62,10 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
         force: false,
     };
     top.finish();
-    (scene, sound)
+    (scene, is_valid)
 }
 
-/// All bodies, and whether nothing was wrong with them.
+/// All bodies, and whether each was read without a problem.
 fn bodies(top: &Reader, problems: &RefCell<Vec<Problem>>) -> (Vec<BodyScene>, Vec<bool>) {
     let before = problems.borrow().len();
     let tables = top.tables("body");
@@ -78,12 +78,12 @@ fn bodies(top: &Reader, problems: &RefCell<Vec<Problem>>) -> (Vec<BodyScene>, Ve
         let body = body::body(table, index);
         (body, problems.borrow().len() == before)
     };
-    let (bodies, sound): (Vec<BodyScene>, _) = tables.into_iter().enumerate().map(read).unzip();
+    let (bodies, is_valid): (Vec<BodyScene>, _) = tables.into_iter().enumerate().map(read).unzip();
     let total: u64 = bodies.iter().map(|b| b.copies.as_ref().map_or(1, Copies::total)).sum();
     if total > MAX_COPIES {
         top.problem("body", format!("leads to {total} bodies; at most {MAX_COPIES} can be run"));
     }
-    (bodies, sound)
+    (bodies, is_valid)
 }
 
 fn integrator(top: &Reader) -> Integrator {
@@ -124,7 +124,7 @@ fn wall(reader: Reader) -> Option<WallScene> {
     }
     let offset = reader.number("offset", Range::Finite).unwrap_or(0.0);
     let plane = normal.and_then(|normal| {
-        // one that is normalised already keeps its bits
+        // do not normalise twice: the bits would change
         let plane = if is_unit(normal.length_squared()) {
             Some(WallPlane { normal, offset })
         } else {

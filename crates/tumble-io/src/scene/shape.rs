@@ -5,7 +5,7 @@ use tumble::Primitive;
 use super::description::ShapeScene;
 use super::reader::{Range, Reader};
 
-/// The keys that one or another built-in shape has.
+/// All keys of the built-in shapes.
 pub const SHAPE_KEYS: [&str; 12] = [
     "radius",
     "subdivisions",

@@ -1,4 +1,4 @@
-//! A scene as TOML again, every default written out.
+//! Writes a scene as TOML, with all defaults.
 
 use toml::{Table, Value};
 use tumble::{
@@ -10,7 +10,7 @@ use super::description::{
     BodyScene, Geometry, MASS_MODELS, MassScene, MotionScene, Scene, ShapeScene,
 };
 
-/// How every scene that a run wrote begins.
+/// The first lines of every scene that a run writes.
 pub const HEADER: &str = "# The scene as run, every default written out.";
 
 impl Scene {
@@ -235,7 +235,7 @@ fn put_material(table: &mut Table, material: &MaterialOverride) {
             put(table, key, value);
         }
     };
-    // of both, the reader would want only one, and this is the one that is heard
+    // the reader accepts only one of the two; the one per area takes precedence
     match material.collision_stiffness_per_area {
         Some(stiffness) => number("collision_stiffness_per_area", Some(stiffness)),
         None => number("collision_stiffness", material.collision_stiffness),

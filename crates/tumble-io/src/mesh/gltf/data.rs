@@ -1,4 +1,4 @@
-//! Buffers and accessors: from the numbers in the document to checked slices of bytes, and to values.
+//! Buffers and accessors: checked slices of bytes, and their values.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -322,7 +322,7 @@ impl Elements<'_> {
         DVec3::from_array([0, 1, 2].map(|k| self.number(i, k)))
     }
 
-    /// A component as a number; whole numbers may stand for fractions (KHR_mesh_quantization).
+    /// A component as a number; normalised integers are fractions (KHR_mesh_quantization).
     fn number(&self, i: usize, k: usize) -> f64 {
         let (value, largest): (f64, f64) = match self.component {
             Component::I8 => (i8::from_le_bytes(self.component(i, k)).into(), 127.0),
@@ -363,7 +363,7 @@ fn decode(data: &str, buffer: usize) -> Result<Vec<u8>, ReadError> {
         .map_err(|e| error(format!("the data URI of buffer {buffer} is no base64: {e}")))
 }
 
-/// Turns `%20` and the like into what they stand for.
+/// Decodes percent-encoded characters.
 fn percent_decode(uri: &str) -> Option<String> {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

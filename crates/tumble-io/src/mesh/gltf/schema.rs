@@ -1,6 +1,6 @@
-//! The part of glTF 2 that says where the vertices are, as `serde` reads it.
+//! The geometry part of the glTF 2 schema, for `serde`.
 //!
-//! Rare fields are boxed: a node of two bytes (`{}`) must not become 300.
+//! Rare fields are boxed to keep nodes small: a node may take only two bytes of JSON (`{}`).
 
 use std::borrow::Cow;
 
