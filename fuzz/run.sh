@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Fuzzes every target for SECONDS each (20 unless said), or only those that are named:
+# Fuzzes every target for SECONDS each (default 20), or only the named ones:
 #     fuzz/run.sh [SECONDS] [TARGET…]
 # Needs a nightly toolchain and a C++ compiler; without a nightly toolchain it says so and skips.
-# What breaks a target is left in fuzz/findings/; the corpus grows in fuzz/corpus/ (neither is in git).
+# Inputs that make a target fail are saved in fuzz/findings/; the corpus grows in fuzz/corpus/ (neither is in git).
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -16,10 +16,10 @@ if ! cargo +nightly --version >/dev/null 2>&1; then
     exit 0
 fi
 
-# a target triple keeps the flags below away from build scripts
+# with an explicit target triple, the flags below do not apply to build scripts
 triple=$(rustc +nightly -vV | sed -n 's/^host: //p')
 folder=${CARGO_TARGET_DIR:-target}
-# coverage as libFuzzer wants it (what cargo-fuzz passes), and the address sanitizer
+# the coverage instrumentation of libFuzzer (as cargo-fuzz sets it) and the address sanitizer
 export RUSTFLAGS="--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
 -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
 -Cllvm-args=-sanitizer-coverage-trace-compares -Ccodegen-units=1 -Zsanitizer=address"

@@ -1,12 +1,12 @@
-//! Any bytes as a checkpoint, as they are and with length and checksum put right: what is read is
-//! written again to the same bytes.
+//! Parses arbitrary bytes as a checkpoint, unchanged and with corrected length and checksum. A checkpoint
+//! that is read is written back to the same bytes.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use sha2::{Digest, Sha256};
 use tumble_io::checkpoint::parse_checkpoint;
 
-/// Where the length of the whole file lies: after 12 bytes of magic and 4 of version.
+/// Position of the length of the complete file: after 12 bytes of magic and 4 of version.
 const LENGTH: std::ops::Range<usize> = 16..24;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -14,12 +14,12 @@ fuzz_target!(|bytes: &[u8]| {
     if bytes.len() < LENGTH.end {
         return;
     }
-    // without these, few bytes would get past the checksum
-    let mut whole = bytes.to_vec();
-    whole[LENGTH].copy_from_slice(&(bytes.len() as u64 + 32).to_le_bytes());
-    let sum = Sha256::digest(&whole);
-    whole.extend(sum);
-    read(&whole);
+    // otherwise hardly any input would pass the checksum
+    let mut complete = bytes.to_vec();
+    complete[LENGTH].copy_from_slice(&(bytes.len() as u64 + 32).to_le_bytes());
+    let checksum = Sha256::digest(&complete);
+    complete.extend(checksum);
+    read(&complete);
 });
 
 fn read(bytes: &[u8]) {

@@ -1,4 +1,4 @@
-//! Any bytes as a mesh of this format: a mesh that keeps its promises, or an error.
+//! Parses arbitrary bytes as a mesh of this format. The result is a valid mesh or an error.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

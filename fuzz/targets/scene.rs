@@ -1,4 +1,4 @@
-//! Any text as a scene: a world that can take its first steps, or an error with its place.
+//! Loads arbitrary text as a scene. The result is a world that can be stepped, or an error.
 #![no_main]
 
 use std::path::Path;
@@ -16,7 +16,7 @@ fuzz_target!(|text: &str| {
                 return;
             }
             for _ in 0..2 {
-                // a state that is not finite is an error, never a silent result
+                // a state that is not finite must be reported as an error
                 if world.step().is_err() {
                     return;
                 }
