@@ -1,6 +1,6 @@
-//! `checkpoint.tumble`: everything that a run needs to continue with the same bits.
+//! `checkpoint.tumble`: everything that a run needs to continue with bit-identical results.
 //!
-//! | bytes | hold |
+//! | bytes | content |
 //! |---|---|
 //! | 12 | [`MAGIC`] |
 //! | 4 | version of the format, [`VERSION`] |
@@ -79,7 +79,7 @@ impl std::fmt::Display for CheckpointError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Read(error) => write!(f, "cannot be read: {error}"),
-            Self::NotAFile => write!(f, "is no ordinary file of at most {} GiB", MAX_BYTES >> 30),
+            Self::NotAFile => write!(f, "is not a regular file of at most {} GiB", MAX_BYTES >> 30),
             Self::Empty => write!(f, "is empty"),
             Self::NotACheckpoint => write!(f, "is no checkpoint: it begins with other bytes"),
             Self::Truncated { found } => {
@@ -91,7 +91,7 @@ impl std::fmt::Display for CheckpointError {
                 "is of format version {version}, but this program reads version {VERSION}: \
                  resume it with the program that wrote it"
             ),
-            Self::Invalid(part) => write!(f, "is no checkpoint of a run: {part} makes no sense"),
+            Self::Invalid(part) => write!(f, "is not a checkpoint of a run: {part} is invalid"),
         }
     }
 }
@@ -114,7 +114,7 @@ pub(crate) fn encode(
 ) -> Vec<u8> {
     let mut conditions = vec![u8::from(force)];
     conditions.extend(energy_start.to_le_bytes());
-    let state = state::bytes(state);
+    let state = state::encode(state);
     let sections: [(&[u8; 4], &[u8]); 4] = [
         (b"NAME", name.as_bytes()),
         (b"SCEN", scene.as_bytes()),
@@ -124,18 +124,18 @@ pub(crate) fn encode(
     let length = HEADER_LENGTH
         + CHECKSUM_LENGTH
         + sections.iter().map(|(_, bytes)| 12 + bytes.len()).sum::<usize>();
-    let mut all = Vec::with_capacity(length);
-    all.extend(MAGIC);
-    all.extend(VERSION.to_le_bytes());
-    all.extend((length as u64).to_le_bytes());
+    let mut encoded = Vec::with_capacity(length);
+    encoded.extend(MAGIC);
+    encoded.extend(VERSION.to_le_bytes());
+    encoded.extend((length as u64).to_le_bytes());
     for (section, bytes) in sections {
-        all.extend(section);
-        all.extend((bytes.len() as u64).to_le_bytes());
-        all.extend(bytes);
+        encoded.extend(section);
+        encoded.extend((bytes.len() as u64).to_le_bytes());
+        encoded.extend(bytes);
     }
-    let sum = Sha256::digest(&all);
-    all.extend(sum);
-    all
+    let checksum = Sha256::digest(&encoded);
+    encoded.extend(checksum);
+    encoded
 }
 
 /// Reads the checkpoint in the file at `path`.
@@ -170,8 +170,8 @@ pub fn parse_checkpoint(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     if bytes.len() < HEADER_LENGTH + CHECKSUM_LENGTH {
         return Err(truncated);
     }
-    let (body, sum) = bytes.split_at(bytes.len() - CHECKSUM_LENGTH);
-    let is_intact = Sha256::digest(body).as_slice() == sum;
+    let (body, checksum) = bytes.split_at(bytes.len() - CHECKSUM_LENGTH);
+    let is_intact = Sha256::digest(body).as_slice() == checksum;
     let mut rest = Bytes(&body[MAGIC.len()..]);
     let header = rest.u32().zip(rest.u64());
     let (version, length) = header.ok_or(CheckpointError::Damaged)?;
@@ -194,7 +194,7 @@ pub fn parse_checkpoint(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     });
     let (force, energy_start) =
         conditions.ok_or(CheckpointError::Invalid("the energy at the start"))?;
-    let state = rest.section(b"STAT").and_then(state::parse).filter(|_| rest.is_empty());
+    let state = rest.section(b"STAT").and_then(state::decode).filter(|_| rest.is_empty());
     let state = state.ok_or(CheckpointError::Invalid("the state"))?;
     Ok(Checkpoint { name, scene, force, energy_start, state })
 }

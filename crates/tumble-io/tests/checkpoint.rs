@@ -1,4 +1,4 @@
-//! `checkpoint.tumble`: what was written is read to the bit, and nothing else is taken for it.
+//! `checkpoint.tumble`: checkpoints are read back bit for bit, and invalid files are rejected.
 
 #![allow(clippy::unwrap_used)]
 
@@ -24,10 +24,10 @@ fn load(text: &str) -> Loaded {
     load_text("s", source, Path::new("."), &LoadOptions::default()).unwrap()
 }
 
-/// A checkpoint in the middle of contact with friction.
+/// A checkpoint of a run during a contact with friction.
 fn checkpoint() -> &'static Checkpoint {
-    static MADE: OnceLock<Checkpoint> = OnceLock::new();
-    MADE.get_or_init(|| {
+    static CHECKPOINT: OnceLock<Checkpoint> = OnceLock::new();
+    CHECKPOINT.get_or_init(|| {
         let Loaded { scene, mut world } = load(SCENE);
         let energy_start = world.energy().total();
         while world.state().springs[0].len() < 3 || world.state().step < 2000 {
@@ -43,52 +43,56 @@ fn checkpoint() -> &'static Checkpoint {
     })
 }
 
-/// The same bytes with a checksum that is right.
-fn sign(mut bytes: Vec<u8>) -> Vec<u8> {
+/// The same bytes with a correct checksum.
+fn with_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
     let body = bytes.len() - 32;
-    let sum = Sha256::digest(&bytes[..body]);
-    bytes[body..].copy_from_slice(&sum);
+    let checksum = Sha256::digest(&bytes[..body]);
+    bytes[body..].copy_from_slice(&checksum);
     bytes
 }
 
 #[test]
-fn a_checkpoint_is_read_as_it_was_written() {
+fn a_checkpoint_is_read_back_unchanged() {
     let written = checkpoint();
     let bytes = written.to_bytes();
     let read = parse_checkpoint(&bytes).unwrap();
     assert_eq!(read.state.hash(), written.state.hash());
     assert_eq!(&read, written);
     assert_eq!(read.to_bytes(), bytes);
-    assert_ne!(read.state.bodies[0].orientation_compensation.length(), 0.0, "the rest counts, too");
+    assert_ne!(
+        read.state.bodies[0].orientation_compensation.length(),
+        0.0,
+        "the checkpoint has no compensation to test"
+    );
 }
 
 #[test]
-fn a_world_goes_on_from_a_checkpoint_to_the_same_bits() {
-    let mut whole = load(SCENE).world;
+fn a_resumed_world_is_bit_identical_to_an_uninterrupted_one() {
+    let mut uninterrupted = load(SCENE).world;
     let read = parse_checkpoint(&checkpoint().to_bytes()).unwrap();
     let mut resumed = load(&read.scene).world;
     resumed.restore(read.state).unwrap();
     while resumed.state().step < 4000 {
         resumed.step().unwrap();
     }
-    while whole.state().step < 4000 {
-        whole.step().unwrap();
+    while uninterrupted.state().step < 4000 {
+        uninterrupted.step().unwrap();
     }
-    assert_eq!(whole.state().hash(), resumed.state().hash());
+    assert_eq!(uninterrupted.state().hash(), resumed.state().hash());
 }
 
 #[test]
-fn the_sign_of_zero_and_the_smallest_numbers_survive() {
-    let mut odd = checkpoint().clone();
-    odd.state.bodies[0].position.x = -0.0;
-    odd.state.bodies[0].velocity.y = f64::from_bits(1);
-    odd.state.totals.evaluations = u64::MAX;
-    let read = parse_checkpoint(&odd.to_bytes()).unwrap();
-    assert_eq!(read.to_bytes(), odd.to_bytes());
+fn negative_zero_and_subnormal_numbers_are_preserved() {
+    let mut written = checkpoint().clone();
+    written.state.bodies[0].position.x = -0.0;
+    written.state.bodies[0].velocity.y = f64::from_bits(1);
+    written.state.totals.evaluations = u64::MAX;
+    let read = parse_checkpoint(&written.to_bytes()).unwrap();
+    assert_eq!(read.to_bytes(), written.to_bytes());
     assert!(read.state.bodies[0].position.x.is_sign_negative());
 }
 
-/// Springs between bodies, which the scene does not have by itself.
+/// A checkpoint with friction springs between bodies, which the scene itself does not produce.
 fn with_pair_springs() -> Checkpoint {
     let kinds = [
         ContactKind::SphereWall,
@@ -96,8 +100,8 @@ fn with_pair_springs() -> Checkpoint {
         ContactKind::PointMesh,
         ContactKind::MeshPoint,
     ];
-    let mut own = checkpoint().clone();
-    own.state.pair_springs = (0..)
+    let mut checkpoint = checkpoint().clone();
+    checkpoint.state.pair_springs = (0..)
         .zip(kinds)
         .map(|(i, kind)| PairSpring {
             first: i,
@@ -108,12 +112,12 @@ fn with_pair_springs() -> Checkpoint {
             stretch: DVec3::new(1e-3, -0.0, f64::from(i)),
         })
         .collect();
-    own.state.totals.work = -12.5;
-    own
+    checkpoint.state.totals.work = -12.5;
+    checkpoint
 }
 
 #[test]
-fn springs_between_bodies_and_the_work_survive() {
+fn springs_between_bodies_and_work_are_preserved() {
     let written = with_pair_springs();
     let read = parse_checkpoint(&written.to_bytes()).unwrap();
     assert_eq!(read, written);
@@ -121,7 +125,7 @@ fn springs_between_bodies_and_the_work_survive() {
 }
 
 #[test]
-fn springs_of_no_kind_and_more_than_there_are_make_no_sense() {
+fn invalid_spring_kinds_and_counts_are_rejected() {
     let bytes = with_pair_springs().to_bytes();
     // from the end: checksum, totals, then the last spring
     let totals = bytes.len() - 32 - 6 * 8;
@@ -132,13 +136,13 @@ fn springs_of_no_kind_and_more_than_there_are_make_no_sense() {
     for (at, value) in [(kind, 4), (kind, 255), (count, 3), (count, 5), (count + 7, 255)] {
         let mut other = bytes.clone();
         other[at] = value;
-        let error = parse_checkpoint(&sign(other)).unwrap_err();
+        let error = parse_checkpoint(&with_checksum(other)).unwrap_err();
         assert!(matches!(error, CheckpointError::Invalid("the state")), "{at} {value}: {error}");
     }
 }
 
 #[test]
-fn every_shorter_file_is_cut_short() {
+fn every_truncated_file_is_reported_as_truncated() {
     let bytes = checkpoint().to_bytes();
     for length in 1..bytes.len() {
         let error = parse_checkpoint(&bytes[..length]).unwrap_err();
@@ -150,18 +154,18 @@ fn every_shorter_file_is_cut_short() {
 }
 
 #[test]
-fn other_files_are_told_by_what_they_are() {
-    let says = |bytes: &[u8], part: &str| {
+fn other_files_are_rejected_with_the_reason() {
+    let assert_error = |bytes: &[u8], part: &str| {
         let error = parse_checkpoint(bytes).unwrap_err().to_string();
         assert!(error.contains(part), "{error}");
     };
-    says(b"duration = 3.0\n", "is no checkpoint: it begins with other bytes");
-    says(b"\x89PNG\r\n\x1a\n", "begins with other bytes");
-    says(&[0; 1000], "begins with other bytes");
+    assert_error(b"duration = 3.0\n", "is no checkpoint: it begins with other bytes");
+    assert_error(b"\x89PNG\r\n\x1a\n", "begins with other bytes");
+    assert_error(&[0; 1000], "begins with other bytes");
     let mut later = checkpoint().to_bytes();
     later[MAGIC.len()..][..4].copy_from_slice(&(VERSION + 6).to_le_bytes());
-    says(&later, "damaged");
-    says(&sign(later), "format version 9, but this program reads version 3");
+    assert_error(&later, "damaged");
+    assert_error(&with_checksum(later), "format version 9, but this program reads version 3");
     let folder = tempfile::tempdir().unwrap();
     assert!(matches!(read_checkpoint(folder.path()), Err(CheckpointError::NotAFile)));
     let missing = read_checkpoint(&folder.path().join("no")).unwrap_err();
@@ -172,28 +176,27 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 400, ..Default::default() })]
 
     #[test]
-    fn a_single_wrong_bit_is_noticed(at in any::<prop::sample::Index>(), bit in 0..8u32) {
+    fn a_single_flipped_bit_is_detected(at in any::<prop::sample::Index>(), bit in 0..8u32) {
         let mut bytes = checkpoint().to_bytes();
         let at = at.index(bytes.len());
         bytes[at] ^= 1 << bit;
         prop_assert!(parse_checkpoint(&bytes).is_err());
     }
 
-    /// Somebody who makes up a checkpoint gets the checksum right, and still no panic and no more
-    /// memory than the file has bytes.
+    /// Forged content with a correct checksum causes no panic, neither in the reader nor in the world.
     #[test]
-    fn made_up_bytes_do_no_harm(
+    fn forged_content_does_not_panic(
         edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
         cut in 0..200usize,
     ) {
         let mut bytes = checkpoint().to_bytes();
-        // lengths and counts lie at the beginning and in the state: both halves get their share
+        // uniform positions hit both the header and the counts within the state
         for (at, value) in edits {
             let at = at.index(bytes.len());
             bytes[at] = value;
         }
         bytes.truncate(bytes.len() - cut);
-        if let Ok(read) = parse_checkpoint(&sign(bytes)) {
+        if let Ok(read) = parse_checkpoint(&with_checksum(bytes)) {
             let mut world = load(SCENE).world;
             if world.restore(read.state).is_ok() {
                 let _ = world.step();
@@ -203,13 +206,13 @@ proptest! {
     }
 
     #[test]
-    fn random_bytes_do_no_harm(tail in prop::collection::vec(any::<u8>(), 0..300)) {
+    fn random_bytes_do_not_panic(tail in prop::collection::vec(any::<u8>(), 0..300)) {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(VERSION.to_le_bytes());
         bytes.extend(&tail);
         let _ = parse_checkpoint(&bytes);
         if tail.len() >= 32 {
-            let _ = parse_checkpoint(&sign(bytes));
+            let _ = parse_checkpoint(&with_checksum(bytes));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! `collision_stiffness_per_area` in scenes: where it may stand, what it replaces, what is refused.
+//! `collision_stiffness_per_area` in scenes: where it is allowed, what it overrides, and what is rejected.
 #![allow(clippy::unwrap_used)]
 
 use std::path::Path;
@@ -12,7 +12,7 @@ fn load(text: &str, sets: &[&str]) -> Result<Loaded, String> {
     load_text("s", source, Path::new("/nowhere"), &options).map_err(|error| error.to_string())
 }
 
-/// A sphere over a floor; `collision`, `wall` and `body` are lines of their tables.
+/// A sphere above a floor; `collision`, `wall` and `body` are lines of their tables.
 fn scene(collision: &str, wall: &str, body: &str) -> String {
     format!(
         "dt = 1e-4\n[collision]\n{collision}\n[[wall]]\nnormal = [0, 1, 0]\noffset = -1\n{wall}\n\
@@ -20,16 +20,16 @@ fn scene(collision: &str, wall: &str, body: &str) -> String {
     )
 }
 
-/// The stiffness of the mean particle, and whether particles have weights.
-fn law(loaded: &Loaded) -> (f64, bool) {
+/// The stiffness of an average particle (N/m), and whether the particles have weights.
+fn mean_stiffness_and_weighting(loaded: &Loaded) -> (f64, bool) {
     let body = loaded.world.body(0).model();
     (body.contacts[0].stiffness, body.shape.particles().is_weighted())
 }
 
 #[test]
-fn either_replaces_the_other_wherever_it_stands() {
+fn each_stiffness_overrides_the_other_at_every_level() {
     let (k, per_area) = ("collision_stiffness = 100", "collision_stiffness_per_area = 1e6");
-    // a geodesic sphere of radius 0.15 m has a little less than 4 π r²
+    // the area of a geodesic sphere of radius 0.15 m is slightly less than 4 π r²
     let mean = 1e6 * 0.28 / 642.0;
     for (collision, wall, body, is_per_area) in [
         (per_area, "", "", true),
@@ -37,29 +37,33 @@ fn either_replaces_the_other_wherever_it_stands() {
         (k, "", per_area, true),
         (per_area, k, "", false),
         (per_area, "", k, false),
-        // the wall is heard before the body
+        // the wall takes precedence over the body
         ("", k, per_area, false),
         ("", per_area, k, true),
     ] {
         let loaded = load(&scene(collision, wall, body), &[]).unwrap();
-        let (stiffness, weighted) = law(&loaded);
+        let (stiffness, weighted) = mean_stiffness_and_weighting(&loaded);
         let what = format!("{collision} {wall} {body}: {stiffness}");
         assert_eq!(weighted, is_per_area, "{what}");
         let expected = if is_per_area { mean } else { 100.0 };
         assert!((stiffness / expected - 1.0).abs() < 0.02, "{what}");
-        // and when it is written and read again
+        // a written scene gives the same stiffness when it is read again
         let text = loaded.scene.to_toml();
-        assert_eq!(law(&load(&text, &[]).unwrap()), (stiffness, weighted), "{text}");
+        assert_eq!(
+            mean_stiffness_and_weighting(&load(&text, &[]).unwrap()),
+            (stiffness, weighted),
+            "{text}"
+        );
     }
 }
 
 #[test]
-fn a_set_replaces_what_the_file_says_and_a_file_says_one() {
+fn set_options_override_the_file_and_a_table_with_both_is_rejected() {
     let text = scene("collision_stiffness = 100", "", "");
     let set = load(&text, &["collision.collision_stiffness_per_area=1e6"]).unwrap();
-    assert!(law(&set).1);
+    assert!(mean_stiffness_and_weighting(&set).1);
     let back = ["collision.collision_stiffness_per_area=1e6", "collision.collision_stiffness=70"];
-    assert_eq!(law(&load(&text, &back).unwrap()), (70.0, false));
+    assert_eq!(mean_stiffness_and_weighting(&load(&text, &back).unwrap()), (70.0, false));
     let both = scene("collision_stiffness = 1\ncollision_stiffness_per_area = 1", "", "");
     let error = load(&both, &[]).unwrap_err();
     let expected =
@@ -70,7 +74,7 @@ fn a_set_replaces_what_the_file_says_and_a_file_says_one() {
 }
 
 #[test]
-fn particles_without_a_surface_are_refused() {
+fn particles_without_a_surface_are_rejected() {
     let per_area = "collision_stiffness_per_area = 1e6";
     let filled = scene("", per_area, "sampling = \"volume\"\nspacing = 0.05");
     let error = load(&filled, &[]).unwrap_err();
@@ -83,8 +87,8 @@ fn particles_without_a_surface_are_refused() {
         error.contains("bare particles have no area") && error.contains("s.toml:5:"),
         "{error}"
     );
-    // with contacts of its own it may stay
+    // surface samples have areas; their own stiffness is allowed
     let sampled = scene("", per_area, "sampling = \"surface\"\nspacing = 0.05");
-    let (stiffness, weighted) = law(&load(&sampled, &[]).unwrap());
+    let (stiffness, weighted) = mean_stiffness_and_weighting(&load(&sampled, &[]).unwrap());
     assert!(stiffness > 0.0 && !weighted);
 }

@@ -1,31 +1,42 @@
-//! The state as bytes: step, time, number of bodies; position, velocity, orientation (w, x, y, z),
-//! its compensation, angular momentum and energy excess of each; number of friction springs of each, and wall, particle
-//! anchor and stretch of each spring; number of springs between bodies, and first, second, kind (a byte), particle,
-//! other and stretch of each; the totals.
+//! Encodes the state as bytes and decodes it.
+//!
+//! In this order:
+//!
+//! - step, time, number of bodies;
+//! - for each body: position, velocity, orientation (w, x, y, z), compensation of the orientation
+//!   (w, x, y, z), angular momentum, energy excess;
+//! - for each body: number of wall friction springs, and for each spring: wall, particle, anchor, stretch;
+//! - number of friction springs between bodies, and for each spring: first body, second body, kind of
+//!   contact (one byte), particle, other, stretch;
+//! - the totals.
 
 use tumble::{BodyState, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, RunTotals, State};
 
 use super::bytes::Bytes;
 
-const BODY: usize = 18 * 8;
-const SPRING: usize = 4 + 4 + 6 * 8;
-const PAIR: usize = 4 * 4 + 1 + 3 * 8;
-/// The kinds of contact by their bytes.
-const KINDS: [ContactKind; 4] = [
+/// Bytes of a body.
+const BODY_LENGTH: usize = 18 * 8;
+/// Bytes of a wall friction spring.
+const SPRING_LENGTH: usize = 4 + 4 + 6 * 8;
+/// Bytes of a friction spring between bodies.
+const PAIR_SPRING_LENGTH: usize = 4 * 4 + 1 + 3 * 8;
+/// The kinds of contact, indexed by their byte.
+const CONTACT_KINDS: [ContactKind; 4] = [
     ContactKind::SphereWall,
     ContactKind::SphereSphere,
     ContactKind::PointMesh,
     ContactKind::MeshPoint,
 ];
 
-pub(super) fn bytes(state: &State) -> Vec<u8> {
+/// Encodes a state.
+pub(super) fn encode(state: &State) -> Vec<u8> {
     // destructured completely, so that the compiler reports a new field here
     let State { step, time, bodies, springs, pair_springs, totals } = state;
     let spring_count: usize = springs.iter().map(Vec::len).sum();
-    let counted = spring_count * SPRING + pair_springs.len() * PAIR;
-    let mut out = Vec::with_capacity(80 + bodies.len() * (BODY + 8) + counted);
+    let spring_bytes = spring_count * SPRING_LENGTH + pair_springs.len() * PAIR_SPRING_LENGTH;
+    let mut out = Vec::with_capacity(80 + bodies.len() * (BODY_LENGTH + 8) + spring_bytes);
     out.extend(step.to_le_bytes());
-    put(&mut out, [*time]);
+    push_numbers(&mut out, [*time]);
     out.extend((bodies.len() as u64).to_le_bytes());
     for body in bodies {
         let BodyState {
@@ -36,21 +47,21 @@ pub(super) fn bytes(state: &State) -> Vec<u8> {
             angular_momentum,
             energy_excess,
         } = body;
-        put(&mut out, position.to_array());
-        put(&mut out, velocity.to_array());
+        push_numbers(&mut out, position.to_array());
+        push_numbers(&mut out, velocity.to_array());
         for q in [orientation, orientation_compensation] {
-            put(&mut out, [q.w, q.x, q.y, q.z]);
+            push_numbers(&mut out, [q.w, q.x, q.y, q.z]);
         }
-        put(&mut out, angular_momentum.to_array());
-        put(&mut out, [*energy_excess]);
+        push_numbers(&mut out, angular_momentum.to_array());
+        push_numbers(&mut out, [*energy_excess]);
     }
     for springs in springs {
         out.extend((springs.len() as u64).to_le_bytes());
         for FrictionSpring { wall, particle, anchor, stretch } in springs {
             out.extend(wall.to_le_bytes());
             out.extend(particle.to_le_bytes());
-            put(&mut out, anchor.to_array());
-            put(&mut out, stretch.to_array());
+            push_numbers(&mut out, anchor.to_array());
+            push_numbers(&mut out, stretch.to_array());
         }
     }
     out.extend((pair_springs.len() as u64).to_le_bytes());
@@ -60,76 +71,76 @@ pub(super) fn bytes(state: &State) -> Vec<u8> {
         out.push(*kind as u8);
         out.extend(particle.to_le_bytes());
         out.extend(other.to_le_bytes());
-        put(&mut out, stretch.to_array());
+        push_numbers(&mut out, stretch.to_array());
     }
     let RunTotals { drag, dashpot, slip, work, max_depth, evaluations } = *totals;
-    put(&mut out, [drag, dashpot, slip, work, max_depth]);
+    push_numbers(&mut out, [drag, dashpot, slip, work, max_depth]);
     out.extend(evaluations.to_le_bytes());
     out
 }
 
-fn put<const N: usize>(out: &mut Vec<u8>, numbers: [f64; N]) {
+fn push_numbers<const N: usize>(out: &mut Vec<u8>, numbers: [f64; N]) {
     out.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
 }
 
-/// The state, and nothing after it.
-pub(super) fn parse(mut from: Bytes) -> Option<State> {
-    let (step, time) = (from.u64()?, from.f64()?);
-    let count = from.count(BODY + 8)?;
-    let bodies = (0..count).map(|_| body(&mut from)).collect::<Option<_>>()?;
-    let springs = (0..count).map(|_| springs(&mut from)).collect::<Option<_>>()?;
-    let pair_springs = pair_springs(&mut from)?;
+/// Decodes a state; `None` if the bytes are invalid or are followed by others.
+pub(super) fn decode(mut bytes: Bytes) -> Option<State> {
+    let (step, time) = (bytes.u64()?, bytes.f64()?);
+    let count = bytes.count(BODY_LENGTH + 8)?;
+    let bodies = (0..count).map(|_| body(&mut bytes)).collect::<Option<_>>()?;
+    let springs = (0..count).map(|_| springs(&mut bytes)).collect::<Option<_>>()?;
+    let pair_springs = pair_springs(&mut bytes)?;
     let totals = RunTotals {
-        drag: from.f64()?,
-        dashpot: from.f64()?,
-        slip: from.f64()?,
-        work: from.f64()?,
-        max_depth: from.f64()?,
-        evaluations: from.u64()?,
+        drag: bytes.f64()?,
+        dashpot: bytes.f64()?,
+        slip: bytes.f64()?,
+        work: bytes.f64()?,
+        max_depth: bytes.f64()?,
+        evaluations: bytes.u64()?,
     };
-    from.is_empty().then_some(State { step, time, bodies, springs, pair_springs, totals })
+    bytes.is_empty().then_some(State { step, time, bodies, springs, pair_springs, totals })
 }
 
-fn body(from: &mut Bytes) -> Option<BodyState> {
+fn body(bytes: &mut Bytes) -> Option<BodyState> {
     Some(BodyState {
-        position: vector(from)?,
-        velocity: vector(from)?,
-        orientation: quaternion(from)?,
-        orientation_compensation: quaternion(from)?,
-        angular_momentum: vector(from)?,
-        energy_excess: from.f64()?,
+        position: vector(bytes)?,
+        velocity: vector(bytes)?,
+        orientation: quaternion(bytes)?,
+        orientation_compensation: quaternion(bytes)?,
+        angular_momentum: vector(bytes)?,
+        energy_excess: bytes.f64()?,
     })
 }
 
-fn springs(from: &mut Bytes) -> Option<Vec<FrictionSpring>> {
-    let count = from.count(SPRING)?;
+fn springs(bytes: &mut Bytes) -> Option<Vec<FrictionSpring>> {
+    let count = bytes.count(SPRING_LENGTH)?;
     let spring = |_| {
-        let (wall, particle) = (from.u32()?, from.u32()?);
-        Some(FrictionSpring { wall, particle, anchor: vector(from)?, stretch: vector(from)? })
+        let (wall, particle) = (bytes.u32()?, bytes.u32()?);
+        Some(FrictionSpring { wall, particle, anchor: vector(bytes)?, stretch: vector(bytes)? })
     };
     (0..count).map(spring).collect()
 }
 
-fn pair_springs(from: &mut Bytes) -> Option<Vec<PairSpring>> {
-    let count = from.count(PAIR)?;
+fn pair_springs(bytes: &mut Bytes) -> Option<Vec<PairSpring>> {
+    let count = bytes.count(PAIR_SPRING_LENGTH)?;
     let spring = |_| {
         Some(PairSpring {
-            first: from.u32()?,
-            second: from.u32()?,
-            kind: *KINDS.get(usize::from(from.take(1)?[0]))?,
-            particle: from.u32()?,
-            other: from.u32()?,
-            stretch: vector(from)?,
+            first: bytes.u32()?,
+            second: bytes.u32()?,
+            kind: *CONTACT_KINDS.get(usize::from(bytes.take(1)?[0]))?,
+            particle: bytes.u32()?,
+            other: bytes.u32()?,
+            stretch: vector(bytes)?,
         })
     };
     (0..count).map(spring).collect()
 }
 
-fn vector(from: &mut Bytes) -> Option<DVec3> {
-    Some(DVec3::new(from.f64()?, from.f64()?, from.f64()?))
+fn vector(bytes: &mut Bytes) -> Option<DVec3> {
+    Some(DVec3::new(bytes.f64()?, bytes.f64()?, bytes.f64()?))
 }
 
-fn quaternion(from: &mut Bytes) -> Option<DQuat> {
-    let (w, x, y, z) = (from.f64()?, from.f64()?, from.f64()?, from.f64()?);
+fn quaternion(bytes: &mut Bytes) -> Option<DQuat> {
+    let (w, x, y, z) = (bytes.f64()?, bytes.f64()?, bytes.f64()?, bytes.f64()?);
     Some(DQuat::from_xyzw(x, y, z, w))
 }

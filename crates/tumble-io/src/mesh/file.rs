@@ -14,13 +14,13 @@ pub(super) const MAX_BYTES: u64 = 4 << 30;
 pub(super) fn check_exists(path: &Path) -> Result<(), ReadError> {
     match fs::metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Err(missing(path)),
-        Err(error) => Err(ReadError::new(None, format!("the file can not be read: {error}"))),
+        Err(error) => Err(ReadError::new(None, format!("the file cannot be read: {error}"))),
         Ok(metadata) if metadata.is_dir() => {
             Err(ReadError::new(None, "this is a folder; give the path of a mesh file in it"))
         }
         Ok(metadata) if !metadata.is_file() => Err(ReadError::new(
             None,
-            "this is no regular file (but a device, pipe or socket); give a mesh file",
+            "this is not a regular file (but a device, pipe or socket); give a mesh file",
         )),
         Ok(metadata) if metadata.len() > MAX_BYTES => Err(ReadError::new(
             None,
@@ -55,7 +55,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes));
     match read {
-        Err(error) => Err(ReadError::new(None, format!("the file can not be read: {error}"))),
+        Err(error) => Err(ReadError::new(None, format!("the file cannot be read: {error}"))),
         // the file grew in the meantime
         Ok(_) if bytes.len() as u64 > MAX_BYTES => {
             Err(ReadError::new(None, "the file has more than 4 GiB; at most 4 GiB are read"))
@@ -116,7 +116,7 @@ fn nearest_name(folder: &Path, path: &Path) -> Option<String> {
         .filter(|name| format_of(Path::new(name)).is_ok())
         .map(|name| {
             let chars: Vec<char> = name.to_lowercase().chars().take(256).collect();
-            // the same name in another format is as near as one letter
+            // the same name with another extension counts as one edit
             let same_stem = stem(Path::new(&name)) == stem(path);
             (if same_stem { 1 } else { edit_distance(&wanted, &chars) }, name)
         })
@@ -125,7 +125,7 @@ fn nearest_name(folder: &Path, path: &Path) -> Option<String> {
         .map(|(_, name)| name)
 }
 
-/// Insertions, deletions and replacements that lead from one word to another (Levenshtein).
+/// The Levenshtein distance between two words.
 fn edit_distance(a: &[char], b: &[char]) -> usize {
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, from) in a.iter().enumerate() {

@@ -42,7 +42,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
 
 /// A source of element values, text or binary.
 trait Source {
-    /// Goes to the next element (in text: the next line).
+    /// Advances to the next element (in text: to the next line that is not empty).
     fn begin(&mut self) -> Result<(), ReadError>;
     /// A number, as a double, which holds all scalar types.
     fn value(&mut self, scalar: Scalar) -> Result<f64, ReadError>;
@@ -67,7 +67,7 @@ impl TextSource<'_> {
         }
     }
 
-    /// Nothing may follow the last element.
+    /// Checks that nothing follows the last element.
     fn check_end(&mut self) -> Result<(), ReadError> {
         loop {
             if self.words.next_word().is_some() {
@@ -242,7 +242,7 @@ impl MeshCollector {
     fn read_length(&self, scalar: Scalar, source: &mut impl Source) -> Result<u64, ReadError> {
         match source.value(scalar)? {
             length if (0.0..=f64::from(u32::MAX)).contains(&length) => Ok(length as u64),
-            length => Err(source.error(format!("a list can not have {length} entries"))),
+            length => Err(source.error(format!("a list cannot have {length} entries"))),
         }
     }
 

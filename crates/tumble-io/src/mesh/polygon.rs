@@ -12,7 +12,7 @@ pub(super) struct Faces {
     triangles: Vec<[u32; 3]>,
     /// First triangle and number of triangles of each face that has more than one.
     fans: Vec<(u32, u32)>,
-    /// Faces seen, of any size.
+    /// Number of faces so far, of any size.
     pub(super) count: usize,
 }
 
@@ -115,7 +115,7 @@ impl Clipper {
             .map(|(&a, &b)| (at(a) - origin).cross(at(b) - origin))
             .sum();
 
-        // drop the axis that the normal is nearest to, and keep the sense of rotation
+        // drop the axis nearest to the normal, preserving the orientation
         let size = normal.abs();
         let axis = if size.x >= size.y && size.x >= size.z {
             0

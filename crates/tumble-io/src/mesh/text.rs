@@ -1,8 +1,8 @@
-//! Words and lines of a text format, without a copy, with the place of each for messages.
+//! A tokeniser for the text formats. It copies nothing and knows the place of each word.
 
 use super::error::{Place, ReadError};
 
-/// Walks through the words of a text, line by line.
+/// Iterates over the words of a text, line by line.
 #[derive(Clone)]
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
@@ -13,7 +13,7 @@ pub(super) struct Words<'a> {
     style: Style,
 }
 
-/// What differs between the text formats.
+/// The syntax of a text format.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Style {
     /// `#` opens a comment, a backslash at the end of a line joins the next line to it.
@@ -24,12 +24,12 @@ pub(super) enum Style {
 
 impl<'a> Words<'a> {
     pub(super) fn new(bytes: &'a [u8], style: Style) -> Self {
-        // a byte order mark is no content
+        // skip a byte order mark
         let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Self { bytes, at, line: 1, line_start: at, word_start: at, style }
     }
 
-    /// The next word of this line, or nothing at its end.
+    /// The next word of this line, or `None` at its end.
     pub(super) fn next_word(&mut self) -> Option<&'a [u8]> {
         self.skip_blanks();
         self.word_start = self.at;
@@ -63,7 +63,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Where the next line begins, if a backslash here joins it to this one.
+    /// The start of the next line, if a backslash here joins it to this one.
     fn joined_line(&self) -> Option<usize> {
         match self.bytes.get(self.at..)? {
             [b'\\', b'\r', b'\n', ..] if self.style == Style::Obj => Some(self.at + 3),
@@ -77,9 +77,9 @@ impl<'a> Words<'a> {
         self.at + rest.iter().position(|&b| b == b'\n' || b == b'\r').unwrap_or(rest.len())
     }
 
-    /// Goes to the next line (`\n`, `\r\n` or `\r`); false at the end of the text.
+    /// Advances to the next line (after `\n`, `\r\n` or `\r`). Returns false at the end of the text.
     pub(super) fn next_line(&mut self) -> bool {
-        // finish a statement whose line is joined to the next
+        // skip the rest of a statement that continues on the next line
         while self.style == Style::Obj && self.next_word().is_some() {}
         let end = self.line_end();
         let width = match &self.bytes[end..] {
@@ -114,12 +114,12 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Counts the words that are left on this line.
+    /// Skips the remaining words of this line and returns their number.
     pub(super) fn count_rest(&mut self) -> usize {
         std::iter::from_fn(|| self.next_word()).count()
     }
 
-    /// Where the walk stands, in bytes from the beginning.
+    /// The current offset (bytes).
     pub(super) fn offset(&self) -> usize {
         self.at
     }
@@ -134,7 +134,7 @@ impl<'a> Words<'a> {
         ReadError::new(Some(self.place()), message)
     }
 
-    /// An error that concerns the whole line.
+    /// An error for the whole line.
     pub(super) fn line_error(&self, message: impl Into<String>) -> ReadError {
         ReadError::new(Some(Place::Line { line: self.line, column: None }), message)
     }
@@ -144,7 +144,7 @@ fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | 0x0b | 0x0c)
 }
 
-/// A word as it may appear in a message: short, and without control characters.
+/// A word for a message: shortened, and with control characters escaped.
 pub(super) fn show(word: &[u8]) -> String {
     let text = String::from_utf8_lossy(&word[..word.len().min(160)]);
     let mut shown: String = text.chars().take(40).flat_map(char::escape_debug).collect();
@@ -154,7 +154,7 @@ pub(super) fn show(word: &[u8]) -> String {
     format!("`{shown}`")
 }
 
-/// Refuses bytes that can not be text, before they give an error that nobody understands.
+/// Rejects bytes that cannot be text, to give a clearer error than the parser would.
 pub(super) fn check_text(bytes: &[u8], format: &str) -> Result<(), ReadError> {
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         return Err(ReadError::new(

@@ -3,10 +3,10 @@ use std::fs;
 use tumble::Mesh;
 use tumble_io::mesh::{Format, Place, parse_mesh, read_mesh, weld};
 
-use super::{good, measures, samples, says, v};
+use super::{area_and_volume, assert_contains, parse_valid, samples, v};
 
 #[test]
-fn a_tetrahedron_is_the_same_in_all_formats() {
+fn all_formats_give_the_same_tetrahedron() {
     let cases = [
         (Format::Obj, samples::obj()),
         (Format::Stl, samples::stl_text()),
@@ -20,7 +20,7 @@ fn a_tetrahedron_is_the_same_in_all_formats() {
     let expected: Vec<_> = samples::VERTICES.map(|p| glam::Vec3::from(p).as_dvec3()).to_vec();
     let triangles = samples::TRIANGLES.map(|t| t.map(u32::from));
     for (format, bytes) in cases {
-        let file = good(format, &bytes);
+        let file = parse_valid(format, &bytes);
         let sorted = |mesh: &Mesh| {
             let corner = |i: u32| mesh.vertices[i as usize].to_array().map(|c| (c * 4.0) as i64);
             let mut all: Vec<_> = mesh.triangles.iter().map(|t| t.map(corner)).collect();
@@ -33,40 +33,40 @@ fn a_tetrahedron_is_the_same_in_all_formats() {
         if format != Format::Stl {
             assert_eq!(file.mesh, reference, "{format}");
         }
-        assert_eq!(measures(&file).1.abs(), 0.75, "{format}");
+        assert_eq!(area_and_volume(&file).1.abs(), 0.75, "{format}");
         assert_eq!((file.format, file.object_count, file.face_count), (format, 1, 4));
     }
 }
 
 #[test]
-fn reads_a_file_and_its_hash() {
+fn a_mesh_file_is_read_and_hashed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("Point.OBJ");
     fs::write(&path, "v 1 2 3\n").unwrap();
     let file = read_mesh(&path, None).unwrap();
     assert_eq!(file.mesh.vertices, [v(1.0, 2.0, 3.0)]);
-    // from sha256sum
+    // computed with sha256sum
     assert_eq!(file.sha256, HASH);
 }
 
 const HASH: &str = "d84416b98ab0f76a39095f9653d2fa0436d3ce2d7a326f708c6be9547771c4ef";
 
 #[test]
-fn errors_name_file_line_and_column() {
+fn errors_report_file_line_and_column() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bad.obj");
     fs::write(&path, "v 1 2 3\nf 1 1 7\n").unwrap();
     let error = read_mesh(&path, None).unwrap_err();
     assert_eq!(error.path.as_deref(), Some(path.as_path()));
     assert_eq!(error.place, Some(Place::Line { line: 2, column: Some(7) }));
-    says(
+    assert_contains(
         &error.to_string(),
         &["bad.obj:2:7: face refers to vertex 7, but the file has only 1 vertices"],
     );
 }
 
 #[test]
-fn paths_that_are_no_mesh_file() {
+fn paths_that_are_not_mesh_files_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let message = |name: &str| read_mesh(&folder.path().join(name), None).unwrap_err().to_string();
     fs::write(folder.path().join("cat.obj"), "v 1 2 3\n").unwrap();
@@ -74,39 +74,45 @@ fn paths_that_are_no_mesh_file() {
     fs::write(folder.path().join("mesh"), "").unwrap();
     fs::write(folder.path().join("empty.stl"), "").unwrap();
     fs::create_dir(folder.path().join("folder.obj")).unwrap();
-    says(&message("cta.obj"), &["no such file; did you mean \"cat.obj\"?"]);
-    says(&message("cat.stl"), &["did you mean \"cat.obj\"?"]);
+    assert_contains(&message("cta.obj"), &["no such file; did you mean \"cat.obj\"?"]);
+    assert_contains(&message("cat.stl"), &["did you mean \"cat.obj\"?"]);
     assert!(message("elephant.obj").ends_with("no such file"));
-    says(&message("nowhere/cat.obj"), &["the folder", "does not exist"]);
-    says(&message("mesh.fbx"), &["unknown mesh format .fbx", ".obj, .stl, .ply, .gltf, .glb"]);
-    says(&message("mesh"), &["no extension"]);
-    says(&message("empty.stl"), &["empty"]);
-    says(&message("folder.obj"), &["this is a folder"]);
+    assert_contains(&message("nowhere/cat.obj"), &["the folder", "does not exist"]);
+    assert_contains(
+        &message("mesh.fbx"),
+        &["unknown mesh format .fbx", ".obj, .stl, .ply, .gltf, .glb"],
+    );
+    assert_contains(&message("mesh"), &["no extension"]);
+    assert_contains(&message("empty.stl"), &["empty"]);
+    assert_contains(&message("folder.obj"), &["this is a folder"]);
 }
 
 #[test]
-fn files_above_4_gib_are_refused_unread() {
+fn files_above_4_gib_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("huge.stl");
-    // a file of holes, which takes no room
+    // a sparse file takes no disk space
     if fs::File::create(&path).unwrap().set_len((4 << 30) + 1).is_ok() {
-        says(&read_mesh(&path, None).unwrap_err().to_string(), &["4.0 GiB", "at most 4 GiB"]);
+        assert_contains(
+            &read_mesh(&path, None).unwrap_err().to_string(),
+            &["4.0 GiB", "at most 4 GiB"],
+        );
     }
 }
 
 #[cfg(unix)]
 #[test]
-fn devices_and_pipes_are_refused() {
+fn devices_sockets_and_pipes_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("zero.obj");
     std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
-    says(&read_mesh(&path, None).unwrap_err().to_string(), &["no regular file"]);
+    assert_contains(&read_mesh(&path, None).unwrap_err().to_string(), &["not a regular file"]);
     let socket = folder.path().join("socket.obj");
     let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
-    says(&read_mesh(&socket, None).unwrap_err().to_string(), &["no regular file"]);
+    assert_contains(&read_mesh(&socket, None).unwrap_err().to_string(), &["not a regular file"]);
     let pipe = folder.path().join("pipe.obj");
     if std::process::Command::new("mkfifo").arg(&pipe).status().is_ok_and(|s| s.success()) {
-        says(&read_mesh(&pipe, None).unwrap_err().to_string(), &["no regular file"]);
+        assert_contains(&read_mesh(&pipe, None).unwrap_err().to_string(), &["not a regular file"]);
     }
 }
 
@@ -122,17 +128,17 @@ fn welding_merges_exact_duplicates_only() {
     ];
     let welded =
         weld(Mesh::new(vertices, vec![[0, 1, 5], [2, 3, 4], [0, 2, 5], [5, 4, 1]]).unwrap());
-    // in the order of their first occurrence; triangles that became lines are gone
+    // in the order of first occurrence; degenerate triangles are removed
     let expected =
         [v(1.0, 0.0, 0.0), v(0.0, 0.0, 0.0), v(1.0 + f64::EPSILON, 0.0, 0.0), v(0.0, 1.0, 0.0)];
     assert_eq!(welded.vertices, expected);
-    assert!(welded.vertices[1].y.is_sign_negative(), "the first occurrence stays as it is");
+    assert!(welded.vertices[1].y.is_sign_negative(), "the first occurrence is kept unchanged");
     assert_eq!(welded.triangles, [[0, 1, 3], [0, 2, 1]]);
     assert_eq!(weld(welded.clone()), welded);
 }
 
 #[test]
-fn the_caller_can_overrule_welding() {
+fn the_caller_can_override_welding() {
     let text = b"v 0 0 0\nv 0 0 0\n";
     let count = |weld| parse_mesh(Format::Obj, text, None, weld).unwrap().mesh.vertices.len();
     assert_eq!((count(None), count(Some(false)), count(Some(true))), (2, 2, 1));

@@ -1,66 +1,67 @@
 use tumble_io::mesh::{Format, parse_mesh, read_mesh};
 
-use super::samples::{VERTICES, data_uri, glb, glb_of, gltf_data, gltf_json};
-use super::{measures, says, v};
+use super::samples::{VERTICES, data_uri, glb, glb_from, gltf_data, gltf_json};
+use super::{area_and_volume, assert_contains, v};
 
-/// Reads the tetrahedron with these nodes.
+/// Parses the tetrahedron with these nodes.
 #[track_caller]
-fn with_nodes(nodes: &str) -> tumble_io::mesh::MeshFile {
-    super::good(Format::Gltf, gltf_json(&data_uri(), nodes, "").as_bytes())
+fn parse_with_nodes(nodes: &str) -> tumble_io::mesh::MeshFile {
+    super::parse_valid(Format::Gltf, gltf_json(&data_uri(), nodes, "").as_bytes())
 }
 
 #[track_caller]
-fn bad(json: &str) -> String {
-    super::bad(Format::Gltf, json.as_bytes())
+fn parse_invalid(json: &str) -> String {
+    super::parse_invalid(Format::Gltf, json.as_bytes())
 }
 
-/// The message for the tetrahedron's document with something replaced.
+/// The error message for the document of the tetrahedron with `from` replaced by `to`.
 #[track_caller]
-fn bad_with(from: &str, to: &str) -> String {
+fn parse_invalid_with(from: &str, to: &str) -> String {
     let json = gltf_json(&data_uri(), r#"{"mesh":0}"#, "");
     assert!(json.contains(from));
-    bad(&json.replacen(from, to, 1))
+    parse_invalid(&json.replacen(from, to, 1))
 }
 
 #[test]
-fn node_transforms_apply_in_double_precision() {
-    // a child of a node that is moved, turned by 90 degrees about z, and scaled
+fn node_transforms_are_applied_in_double_precision() {
+    // the parent node is translated, rotated by 90 degrees about z, and scaled
     let h = 0.5_f64.sqrt();
-    let file = with_nodes(&format!(
+    let file = parse_with_nodes(&format!(
         r#"{{"children":[1],"translation":[0.1,0,0],"rotation":[0,0,{h},{h}],"scale":[2,2,2]}},{{"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,7,1]}}"#
     ));
     let expected = [v(0.1, 0.0, 14.0), v(0.1, 3.0, 14.0), v(-3.9, 0.0, 14.0), v(0.1, 0.0, 13.5)];
     for (found, expected) in file.mesh.vertices.iter().zip(expected) {
         assert!((*found - expected).length() < 1e-14, "{found} {expected}");
     }
-    assert!((measures(&file).1 - 8.0 * 0.75).abs() < 1e-12);
+    assert!((area_and_volume(&file).1 - 8.0 * 0.75).abs() < 1e-12);
 }
 
 #[test]
-fn mirrored_nodes_keep_their_outside() {
+fn mirrored_nodes_keep_outward_winding() {
     let (plain, mirrored) =
-        (with_nodes(r#"{"mesh":0}"#), with_nodes(r#"{"mesh":0,"scale":[-1,1,1]}"#));
-    assert_eq!(measures(&plain), measures(&mirrored));
+        (parse_with_nodes(r#"{"mesh":0}"#), parse_with_nodes(r#"{"mesh":0,"scale":[-1,1,1]}"#));
+    assert_eq!(area_and_volume(&plain), area_and_volume(&mirrored));
     assert_eq!(mirrored.mesh.vertices[1], v(-1.5, 0.0, 0.0));
 }
 
 #[test]
-fn instances_become_vertices_of_their_own() {
-    let file = with_nodes(r#"{"children":[1,2]},{"mesh":0},{"mesh":0,"translation":[10,0,0]}"#);
+fn each_instance_has_its_own_vertices() {
+    let file =
+        parse_with_nodes(r#"{"children":[1,2]},{"mesh":0},{"mesh":0,"translation":[10,0,0]}"#);
     assert_eq!((file.mesh.vertices.len(), file.object_count), (8, 2));
     assert_eq!(file.mesh.vertices[5], v(11.5, 0.0, 0.0));
 }
 
 #[test]
-fn the_transform_of_a_skinned_node_does_not_apply() {
-    let file = with_nodes(r#"{"mesh":0,"skin":0,"translation":[10,0,0]}"#);
+fn the_transform_of_a_skinned_node_is_ignored() {
+    let file = parse_with_nodes(r#"{"mesh":0,"skin":0,"translation":[10,0,0]}"#);
     assert_eq!(file.mesh.vertices[1], v(1.5, 0.0, 0.0));
 }
 
 #[test]
-fn scenes_nodes_or_meshes_are_taken() {
+fn without_scenes_all_nodes_are_read_and_without_nodes_all_meshes() {
     let json = gltf_json(&data_uri(), r#"{"mesh":0},{"mesh":0,"translation":[9,0,0]}"#, "");
-    let count = |json: &str| super::good(Format::Gltf, json.as_bytes()).mesh.vertices.len();
+    let count = |json: &str| super::parse_valid(Format::Gltf, json.as_bytes()).mesh.vertices.len();
     assert_eq!(count(&json), 4);
     assert_eq!(count(&json.replace(r#""scene":0,"#, "")), 4);
     let without_scenes = json.replace(r#""scene":0,"scenes":[{"nodes":[0]}],"#, "");
@@ -71,36 +72,36 @@ fn scenes_nodes_or_meshes_are_taken() {
 }
 
 #[test]
-fn strips_fans_and_unindexed_triangles() {
+fn strips_fans_and_unindexed_triangles_are_read() {
     let triangles = |mode: &str| {
         let json = gltf_json(&data_uri(), r#"{"mesh":0}"#, "").replace(r#","indices":1"#, mode);
-        super::good(Format::Gltf, json.as_bytes()).mesh.triangles
+        super::parse_valid(Format::Gltf, json.as_bytes()).mesh.triangles
     };
     assert_eq!(triangles(r#","mode":5"#), [[0, 1, 2], [1, 3, 2]]);
     assert_eq!(triangles(r#","mode":6"#), [[0, 1, 2], [0, 2, 3]]);
     let three = gltf_json(&data_uri(), r#"{"mesh":0}"#, "")
         .replace(r#","indices":1"#, "")
         .replace(r#""count":4"#, r#""count":3"#);
-    assert_eq!(super::good(Format::Gltf, three.as_bytes()).mesh.triangles, [[0, 1, 2]]);
+    assert_eq!(super::parse_valid(Format::Gltf, three.as_bytes()).mesh.triangles, [[0, 1, 2]]);
 }
 
 #[test]
-fn sparse_quantised_and_interleaved_positions() {
+fn sparse_quantised_and_interleaved_positions_are_read() {
     let read = |accessor: &str, views: &str, data: &[u8]| {
         let json = format!(
             r#"{{"asset":{{"version":"2.0"}},"extensionsRequired":["KHR_mesh_quantization"],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"TEXCOORD_0":1}}}}]}}],"accessors":[{accessor},{{"componentType":5126,"count":3,"type":"VEC2"}}],"bufferViews":[{views}],"buffers":[{{"byteLength":{}}}]}}"#,
             data.len()
         );
-        super::good(Format::Gltf, &glb_of(&json, data)).mesh.vertices
+        super::parse_valid(Format::Gltf, &glb_from(&json, data)).mesh.vertices
     };
-    // bytes -128 to 127 stand for -1 to 1, each vertex in 4 bytes
+    // normalised signed bytes with a stride of 4
     let quantised = read(
         r#"{"bufferView":0,"componentType":5120,"normalized":true,"count":3,"type":"VEC3"}"#,
         r#"{"buffer":0,"byteLength":12,"byteStride":4}"#,
         &[127, 0, 129, 9, 0, 0, 0, 9, 128, 127, 0, 9],
     );
     assert_eq!(quantised, [v(1.0, 0.0, -1.0), v(0.0, 0.0, 0.0), v(-1.0, 1.0, 0.0)]);
-    // zeros, but for the vertex with index 2
+    // all zeros except vertex 2
     let mut data = vec![2, 0, 0, 0];
     data.extend([5.0_f32, 6.0, 7.0].iter().flat_map(|c| c.to_le_bytes()));
     let sparse = read(
@@ -112,7 +113,7 @@ fn sparse_quantised_and_interleaved_positions() {
 }
 
 #[test]
-fn side_files_stay_in_their_folder() {
+fn side_files_outside_the_folder_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("inner");
     std::fs::create_dir(&inner).unwrap();
@@ -129,35 +130,47 @@ fn side_files_stay_in_their_folder() {
     assert_eq!(with_uri("./a b.bin").unwrap().mesh.vertices.len(), VERTICES.len());
     let absolute = folder.path().join("outside.bin").display().to_string();
     for uri in ["../outside.bin", "%2e%2e/outside.bin", "a/../../outside.bin", &absolute] {
-        says(&with_uri(uri).unwrap_err().to_string(), &["tet.gltf: ", "must lie beside the file"]);
+        assert_contains(
+            &with_uri(uri).unwrap_err().to_string(),
+            &["tet.gltf: ", "must lie beside the file"],
+        );
     }
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(folder.path().join("outside.bin"), inner.join("link.bin"))
             .unwrap();
-        says(&with_uri("link.bin").unwrap_err().to_string(), &["must lie beside the file"]);
+        assert_contains(
+            &with_uri("link.bin").unwrap_err().to_string(),
+            &["must lie beside the file"],
+        );
     }
-    says(&with_uri("no.bin").unwrap_err().to_string(), &["side file \"no.bin\"", "no such file"]);
-    says(&with_uri("short.bin").unwrap_err().to_string(), &["72 bytes, but only 10"]);
-    says(&with_uri("%zz").unwrap_err().to_string(), &["not well formed"]);
+    assert_contains(
+        &with_uri("no.bin").unwrap_err().to_string(),
+        &["side file \"no.bin\"", "no such file"],
+    );
+    assert_contains(&with_uri("short.bin").unwrap_err().to_string(), &["72 bytes, but only 10"]);
+    assert_contains(&with_uri("%zz").unwrap_err().to_string(), &["not well formed"]);
     let json = gltf_json(r#""uri":"a.bin","#, r#"{"mesh":0}"#, "");
-    says(&bad(&json), &["no folder to look in"]);
+    assert_contains(&parse_invalid(&json), &["no folder to look in"]);
 }
 
 #[test]
-fn cycles_and_shared_nodes_are_refused() {
-    let of = |nodes: &str| bad(&gltf_json(&data_uri(), nodes, ""));
-    says(&of(r#"{"mesh":0,"children":[0]}"#), &["node 0 is reached twice"]);
-    says(&of(r#"{"children":[1]},{"children":[2]},{"children":[1],"mesh":0}"#), &["node 1"]);
-    says(&of(r#"{"children":[1,1]},{"mesh":0}"#), &["node 1 is reached twice"]);
-    // a chain as long as it likes
+fn cycles_and_shared_nodes_are_rejected() {
+    let message = |nodes: &str| parse_invalid(&gltf_json(&data_uri(), nodes, ""));
+    assert_contains(&message(r#"{"mesh":0,"children":[0]}"#), &["node 0 is reached twice"]);
+    assert_contains(
+        &message(r#"{"children":[1]},{"children":[2]},{"children":[1],"mesh":0}"#),
+        &["node 1"],
+    );
+    assert_contains(&message(r#"{"children":[1,1]},{"mesh":0}"#), &["node 1 is reached twice"]);
+    // a deep hierarchy does not overflow the stack
     let chain: String = (1..50_000).map(|i| format!(r#"{{"children":[{i}]}},"#)).collect();
-    assert_eq!(with_nodes(&(chain + r#"{"mesh":0}"#)).mesh.vertices.len(), 4);
+    assert_eq!(parse_with_nodes(&(chain + r#"{"mesh":0}"#)).mesh.vertices.len(), 4);
 }
 
 #[test]
-fn instances_out_of_proportion_are_refused() {
-    // 2,000 nodes with a mesh of 2,000 primitives are little text
+fn excessive_instancing_is_rejected() {
+    // 2,000 nodes with a mesh of 2,000 primitives need little text
     let primitives = vec![r#"{"attributes":{"POSITION":0}}"#; 2_000].join(",");
     let children: Vec<String> = (1..2_000).map(|i| i.to_string()).collect();
     let nodes = format!(r#"{{"children":[{}]}}"#, children.join(","))
@@ -166,11 +179,11 @@ fn instances_out_of_proportion_are_refused() {
         r#"{"attributes":{"POSITION":0},"indices":1}"#,
         &primitives.replace("}}", r#"},"mode":6}"#),
     );
-    says(&bad(&json), &["out of proportion"]);
-    // zeros that no buffer has to hold
+    assert_contains(&parse_invalid(&json), &["out of proportion"]);
+    // a sparse accessor without a base buffer
     let sparse = r#""count":4000000000,"sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":0}},"type":"VEC3""#;
-    says(
-        &bad_with(
+    assert_contains(
+        &parse_invalid_with(
             r#""bufferView":0,"componentType":5126,"count":4,"type":"VEC3""#,
             &format!(r#""componentType":5126,{sparse}"#),
         ),
@@ -179,89 +192,128 @@ fn instances_out_of_proportion_are_refused() {
 }
 
 #[test]
-fn extensions_that_are_required_but_unknown() {
-    let of = |name: &str| {
+fn unsupported_required_extensions_are_rejected() {
+    let document = |name: &str| {
         gltf_json(&data_uri(), r#"{"mesh":0}"#, &format!(r#","extensionsRequired":["{name}"]"#))
     };
-    says(&bad(&of("KHR_draco_mesh_compression")), &["KHR_draco_mesh_compression", "not supported"]);
-    says(&bad(&of("EXT_meshopt_compression")), &["EXT_meshopt_compression"]);
-    super::good(Format::Gltf, of("KHR_materials_unlit").as_bytes());
+    assert_contains(
+        &parse_invalid(&document("KHR_draco_mesh_compression")),
+        &["KHR_draco_mesh_compression", "not supported"],
+    );
+    assert_contains(
+        &parse_invalid(&document("EXT_meshopt_compression")),
+        &["EXT_meshopt_compression"],
+    );
+    super::parse_valid(Format::Gltf, document("KHR_materials_unlit").as_bytes());
 }
 
 #[test]
-fn references_beyond_what_is_there() {
-    says(&bad_with(r#""POSITION":0"#, r#""POSITION":7"#), &["accessor 7", "only 2"]);
-    says(&bad_with(r#""indices":1"#, r#""indices":9"#), &["accessor 9"]);
-    says(&bad_with(r#"{"mesh":0}"#, r#"{"mesh":3}"#), &["mesh 3"]);
-    says(&bad_with(r#"{"nodes":[0]}"#, r#"{"nodes":[5]}"#), &["node 5"]);
-    says(&bad_with(r#""scene":0"#, r#""scene":5"#), &["scene 5"]);
-    says(&bad_with(r#"{"bufferView":0"#, r#"{"bufferView":5"#), &["bufferView 5"]);
-    says(&bad_with(r#"{"buffer":0,"byteL"#, r#"{"buffer":8,"byteL"#), &["buffer 8"]);
-    says(&bad_with(r#""byteLength":48"#, r#""byteLength":4800"#), &["reaches beyond the 72 bytes"]);
-    says(
-        &bad_with(r#""byteOffset":48"#, r#""byteOffset":18446744073709551615"#),
+fn out_of_range_references_are_rejected() {
+    assert_contains(
+        &parse_invalid_with(r#""POSITION":0"#, r#""POSITION":7"#),
+        &["accessor 7", "only 2"],
+    );
+    assert_contains(&parse_invalid_with(r#""indices":1"#, r#""indices":9"#), &["accessor 9"]);
+    assert_contains(&parse_invalid_with(r#"{"mesh":0}"#, r#"{"mesh":3}"#), &["mesh 3"]);
+    assert_contains(&parse_invalid_with(r#"{"nodes":[0]}"#, r#"{"nodes":[5]}"#), &["node 5"]);
+    assert_contains(&parse_invalid_with(r#""scene":0"#, r#""scene":5"#), &["scene 5"]);
+    assert_contains(
+        &parse_invalid_with(r#"{"bufferView":0"#, r#"{"bufferView":5"#),
+        &["bufferView 5"],
+    );
+    assert_contains(
+        &parse_invalid_with(r#"{"buffer":0,"byteL"#, r#"{"buffer":8,"byteL"#),
+        &["buffer 8"],
+    );
+    assert_contains(
+        &parse_invalid_with(r#""byteLength":48"#, r#""byteLength":4800"#),
+        &["reaches beyond the 72 bytes"],
+    );
+    assert_contains(
+        &parse_invalid_with(r#""byteOffset":48"#, r#""byteOffset":18446744073709551615"#),
         &["reaches beyond"],
     );
-    says(&bad_with(r#""count":4"#, r#""count":5"#), &["5 elements", "48 bytes"]);
-    says(&bad_with(r#""count":4"#, r#""count":18446744073709551615"#), &["out of proportion"]);
-    says(
-        &bad_with(r#""count":4"#, r#""byteOffset":18446744073709551615,"count":4"#),
+    assert_contains(
+        &parse_invalid_with(r#""count":4"#, r#""count":5"#),
+        &["5 elements", "48 bytes"],
+    );
+    assert_contains(
+        &parse_invalid_with(r#""count":4"#, r#""count":18446744073709551615"#),
+        &["out of proportion"],
+    );
+    assert_contains(
+        &parse_invalid_with(r#""count":4"#, r#""byteOffset":18446744073709551615,"count":4"#),
         &["reach beyond"],
     );
-    says(
-        &bad_with(r#""count":4"#, r#""count":2"#),
+    assert_contains(
+        &parse_invalid_with(r#""count":4"#, r#""count":2"#),
         &["an index is 2, but its primitive has only 2"],
     );
-    says(&bad_with(r#""count":12"#, r#""count":11"#), &["no multiple of 3"]);
-    says(
-        &bad_with(r#""byteLength":48"#, r#""byteLength":48,"byteStride":2"#),
+    assert_contains(&parse_invalid_with(r#""count":12"#, r#""count":11"#), &["no multiple of 3"]);
+    assert_contains(
+        &parse_invalid_with(r#""byteLength":48"#, r#""byteLength":48,"byteStride":2"#),
         &["byteStride of 2"],
     );
-    says(&bad_with(r#""byteLength":72"#, r#""byteLength":73"#), &["promises 73 bytes"]);
+    assert_contains(
+        &parse_invalid_with(r#""byteLength":72"#, r#""byteLength":73"#),
+        &["promises 73 bytes"],
+    );
 }
 
 #[test]
-fn malformed_documents() {
-    says(&bad(""), &["empty"]);
-    says(&bad("{\n\"asset\": 7}"), &["line 2", "no glTF"]);
-    says(&bad(&"[".repeat(100_000)), &["no glTF"]);
-    says(&bad_with(r#""version":"2.0""#, r#""version":"1.0""#), &["glTF 1.0", "only glTF 2"]);
-    says(&bad_with(r#""type":"VEC3""#, r#""type":"VEC2""#), &["VEC3"]);
-    says(&bad_with("5123", "5126"), &["unsigned"]);
-    says(&bad_with("5126", "77"), &["componentType 77"]);
-    says(&bad_with(r#""bufferView":0,"#, ""), &["no bufferView"]);
-    says(&bad_with(r#""indices":1"#, r#""mode":0"#), &["no triangles"]);
-    says(&bad_with("base64,", "base64,!"), &["no base64"]);
-    says(&bad_with(";base64,", ","), &["must be base64"]);
-    says(&bad_with(r#"{"mesh":0}"#, r#"{"mesh":0,"rotation":[0,0,0,0]}"#), &["rotation of node 0"]);
-    says(
-        &bad_with(r#"{"mesh":0}"#, r#"{"mesh":0,"scale":[1e308,1,1],"translation":[1e308,0,0]}"#),
+fn malformed_documents_are_rejected() {
+    assert_contains(&parse_invalid(""), &["empty"]);
+    assert_contains(&parse_invalid("{\n\"asset\": 7}"), &["line 2", "no glTF"]);
+    assert_contains(&parse_invalid(&"[".repeat(100_000)), &["no glTF"]);
+    assert_contains(
+        &parse_invalid_with(r#""version":"2.0""#, r#""version":"1.0""#),
+        &["glTF 1.0", "only glTF 2"],
+    );
+    assert_contains(&parse_invalid_with(r#""type":"VEC3""#, r#""type":"VEC2""#), &["VEC3"]);
+    assert_contains(&parse_invalid_with("5123", "5126"), &["unsigned"]);
+    assert_contains(&parse_invalid_with("5126", "77"), &["componentType 77"]);
+    assert_contains(&parse_invalid_with(r#""bufferView":0,"#, ""), &["no bufferView"]);
+    assert_contains(&parse_invalid_with(r#""indices":1"#, r#""mode":0"#), &["no triangles"]);
+    assert_contains(&parse_invalid_with("base64,", "base64,!"), &["no base64"]);
+    assert_contains(&parse_invalid_with(";base64,", ","), &["must be base64"]);
+    assert_contains(
+        &parse_invalid_with(r#"{"mesh":0}"#, r#"{"mesh":0,"rotation":[0,0,0,0]}"#),
+        &["rotation of node 0"],
+    );
+    assert_contains(
+        &parse_invalid_with(
+            r#"{"mesh":0}"#,
+            r#"{"mesh":0,"scale":[1e308,1,1],"translation":[1e308,0,0]}"#,
+        ),
         &["infinite"],
     );
     let mut data = gltf_data();
     data[4..8].copy_from_slice(&f32::NAN.to_le_bytes());
-    let nan = glb_of(&gltf_json("", r#"{"mesh":0}"#, ""), &data);
-    says(&super::bad(Format::Gltf, &nan), &["position 0 of accessor 0", "must be finite"]);
+    let nan = glb_from(&gltf_json("", r#"{"mesh":0}"#, ""), &data);
+    assert_contains(
+        &super::parse_invalid(Format::Gltf, &nan),
+        &["position 0 of accessor 0", "must be finite"],
+    );
 }
 
 #[test]
-fn malformed_binary_containers() {
+fn malformed_binary_containers_are_rejected() {
     let bytes = glb();
     for length in 0..bytes.len() {
-        super::bad(Format::Gltf, &bytes[..length]);
+        super::parse_invalid(Format::Gltf, &bytes[..length]);
     }
-    let with = |at: usize, byte: u8| {
+    let message_with = |at: usize, byte: u8| {
         let mut bytes = bytes.clone();
         bytes[at] = byte;
-        super::bad(Format::Gltf, &bytes)
+        super::parse_invalid(Format::Gltf, &bytes)
     };
-    says(&with(4, 1), &["version 1"]);
-    says(&with(11, 255), &["at byte 8", "truncated"]);
-    says(&with(15, 255), &["at byte 12", "more than are left"]);
-    says(&with(16, b'X'), &["must be JSON"]);
-    says(&with(20, b'X'), &["at byte 20", "no glTF"]);
+    assert_contains(&message_with(4, 1), &["version 1"]);
+    assert_contains(&message_with(11, 255), &["at byte 8", "truncated"]);
+    assert_contains(&message_with(15, 255), &["at byte 12", "more than are left"]);
+    assert_contains(&message_with(16, b'X'), &["must be JSON"]);
+    assert_contains(&message_with(20, b'X'), &["at byte 20", "no glTF"]);
     // the tetrahedron without its binary chunk
     let json = gltf_json("", r#"{"mesh":0}"#, "");
-    says(&bad(&json), &["buffer 0 has no uri"]);
+    assert_contains(&parse_invalid(&json), &["buffer 0 has no uri"]);
     assert!(parse_mesh(Format::Gltf, &bytes, None, None).is_ok());
 }

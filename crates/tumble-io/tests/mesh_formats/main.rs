@@ -1,4 +1,4 @@
-//! Mesh files of all formats: what is read, and what is refused with which words.
+//! Mesh readers of all formats: valid files, and the error messages for invalid ones.
 #![allow(clippy::unwrap_used)]
 
 mod file;
@@ -12,31 +12,31 @@ mod stl;
 use glam::DVec3;
 use tumble_io::mesh::{Format, MeshFile, parse_mesh};
 
-/// Reads bytes that must be a mesh.
+/// Parses bytes that must be a valid mesh.
 #[track_caller]
-fn good(format: Format, bytes: &[u8]) -> MeshFile {
+fn parse_valid(format: Format, bytes: &[u8]) -> MeshFile {
     parse_mesh(format, bytes, None, None).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The message for bytes that must be refused.
+/// Parses bytes that must be rejected and returns the error message.
 #[track_caller]
-fn bad(format: Format, bytes: &[u8]) -> String {
+fn parse_invalid(format: Format, bytes: &[u8]) -> String {
     match parse_mesh(format, bytes, None, None) {
-        Ok(file) => panic!("read as {file:?}"),
+        Ok(file) => panic!("not rejected: {file:?}"),
         Err(error) => error.to_string(),
     }
 }
 
-/// Checks that a message says all of these.
+/// Checks that a message contains all of these parts.
 #[track_caller]
-fn says(message: &str, parts: &[&str]) {
+fn assert_contains(message: &str, parts: &[&str]) {
     for part in parts {
-        assert!(message.contains(part), "{message:?} does not say {part:?}");
+        assert!(message.contains(part), "{message:?} does not contain {part:?}");
     }
 }
 
-/// Twice the area of all triangles, and six times the volume that they enclose.
-fn measures(file: &MeshFile) -> (f64, f64) {
+/// Twice the total area of the triangles, and six times the volume that they enclose.
+fn area_and_volume(file: &MeshFile) -> (f64, f64) {
     let corners = |t: &[u32; 3]| t.map(|i| file.mesh.vertices[i as usize]);
     file.mesh.triangles.iter().map(corners).fold((0.0, 0.0), |(area, volume), [a, b, c]| {
         (area + (b - a).cross(c - a).length(), volume + a.dot(b.cross(c)))

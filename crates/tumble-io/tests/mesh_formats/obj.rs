@@ -1,22 +1,23 @@
 use tumble_io::mesh::{Format, MeshFile};
 
-use super::{measures, says, v};
+use super::{area_and_volume, assert_contains, v};
 
 #[track_caller]
-fn good(text: &str) -> MeshFile {
-    super::good(Format::Obj, text.as_bytes())
+fn parse_valid(text: &str) -> MeshFile {
+    super::parse_valid(Format::Obj, text.as_bytes())
 }
 
 #[track_caller]
-fn bad(text: &str) -> String {
-    super::bad(Format::Obj, text.as_bytes())
+fn parse_invalid(text: &str) -> String {
+    super::parse_invalid(Format::Obj, text.as_bytes())
 }
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 #[test]
-fn keeps_all_vertices_in_order_at_double_precision() {
-    let file = good("v 0.1 0.2 0.3\nv 9 9 9\nv 1 0 0\nv 0.1 0.2 0.3\nv 0 1e-300 0\nf 5 3 1\n");
+fn all_vertices_are_kept_in_order_in_double_precision() {
+    let file =
+        parse_valid("v 0.1 0.2 0.3\nv 9 9 9\nv 1 0 0\nv 0.1 0.2 0.3\nv 0 1e-300 0\nf 5 3 1\n");
     let expected = [
         v(0.1, 0.2, 0.3),
         v(9.0, 9.0, 9.0),
@@ -31,29 +32,29 @@ fn keeps_all_vertices_in_order_at_double_precision() {
 }
 
 #[test]
-fn reads_all_corner_styles() {
+fn all_forms_of_face_corners_are_read() {
     let text = format!(
         "{SQUARE}vt 0 0\nvn 0 0 1\nf 1 2 3\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1/1/1 2/1/1 3/1/1\nf -4 -3 -2\nf -4/-1/-1 -3// -2/1/\n"
     );
-    assert_eq!(good(&text).mesh.triangles, [[0, 1, 2]; 6]);
+    assert_eq!(parse_valid(&text).mesh.triangles, [[0, 1, 2]; 6]);
 }
 
 #[test]
-fn negative_indices_count_from_where_they_stand() {
-    let file = good("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -3 -2 -1\n");
+fn negative_indices_count_back_from_the_face() {
+    let file = parse_valid("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -3 -2 -1\n");
     assert_eq!(file.mesh.triangles, [[0, 1, 2], [1, 2, 3]]);
 }
 
 #[test]
-fn passes_over_weights_colours_and_other_statements() {
+fn weights_colours_and_other_statements_are_ignored() {
     let text = "mtllib a.mtl\nusemtl red\ns off\nv 1 2 3 1.0\nv 4 5 6 0.1 0.2 0.3\nv 7 8 9 1 0.1 0.2 0.3\nvt 0 0\nvn 0 0 1\nvp 0.5\nl 1 2\np 1\ncstype bspline\nmy_own-word 7\nf 1 2 3\n";
-    let file = good(text);
+    let file = parse_valid(text);
     assert_eq!(file.mesh.vertices, [v(1.0, 2.0, 3.0), v(4.0, 5.0, 6.0), v(7.0, 8.0, 9.0)]);
 }
 
 #[test]
-fn reads_comments_joined_lines_and_all_line_ends() {
-    let plain = good("v 1 2 3\nv 4 5 6\nv 7 8 9\nf 1 2 3\n").mesh;
+fn comments_continued_lines_and_all_line_endings_are_read() {
+    let plain = parse_valid("v 1 2 3\nv 4 5 6\nv 7 8 9\nf 1 2 3\n").mesh;
     for text in [
         "v 1 2 3\r\nv 4 5 6\r\nv 7 8 9\r\nf 1 2 3\r\n",
         "v 1 2 3\rv 4 5 6\rv 7 8 9\rf 1 2 3",
@@ -61,26 +62,26 @@ fn reads_comments_joined_lines_and_all_line_ends() {
         "v 1 \\\n2 3\nv 4 5 6\nv 7 8\\\r\n 9\nf 1 \\\n 2\\\n 3\n",
         "o back\\slash\\\n v 8 8 8\nv 1 2 3\nv 4 5 6\nv 7 8 9\nf 1 2 3\n",
     ] {
-        assert_eq!(good(text).mesh, plain, "{text:?}");
+        assert_eq!(parse_valid(text).mesh, plain, "{text:?}");
     }
 }
 
 #[test]
-fn counts_objects_or_else_groups() {
-    assert_eq!(good(&format!("{SQUARE}o a\no b\ng c\n")).object_count, 2);
-    assert_eq!(good(&format!("{SQUARE}g a\ng b\ng c\n")).object_count, 3);
-    assert_eq!(good(SQUARE).object_count, 1);
+fn groups_are_counted_if_there_are_no_objects() {
+    assert_eq!(parse_valid(&format!("{SQUARE}o a\no b\ng c\n")).object_count, 2);
+    assert_eq!(parse_valid(&format!("{SQUARE}g a\ng b\ng c\n")).object_count, 3);
+    assert_eq!(parse_valid(SQUARE).object_count, 1);
 }
 
 #[test]
-fn cuts_convex_polygons_into_fans() {
-    let file = good(&format!("{SQUARE}f 1 2 3 4\n"));
+fn convex_polygons_become_fans() {
+    let file = parse_valid(&format!("{SQUARE}f 1 2 3 4\n"));
     assert_eq!(file.mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(file.face_count, 1);
 }
 
 #[test]
-fn cuts_concave_polygons_without_overlap() {
+fn concave_polygons_are_triangulated_without_overlap() {
     // an L of area 3, an arrow whose fan would overlap, and a comb, in planes of any direction
     let cases: [(&[[f64; 2]], f64); 3] = [
         (&[[2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0], [0.0, 0.0], [2.0, 0.0]], 3.0),
@@ -104,26 +105,26 @@ fn cuts_concave_polygons_without_overlap() {
         ),
     ];
     for (points, area) in cases {
-        for place in ["x y 0", "0 x y", "y 0 x", "y x 0", "x y x"] {
+        for plane in ["x y 0", "0 x y", "y 0 x", "y x 0", "x y x"] {
             let mut text = String::new();
             for [x, y] in points {
-                let at = place.replace('x', &x.to_string()).replace('y', &y.to_string());
+                let at = plane.replace('x', &x.to_string()).replace('y', &y.to_string());
                 text += &format!("v {at}\n");
             }
             // a face may come before its vertices
             let face: String = (1..=points.len()).map(|i| format!(" {i}")).collect();
-            let file = good(&format!("f{face}\n{text}"));
-            let slope = if place == "x y x" { 2.0_f64.sqrt() } else { 1.0 };
-            let (twice, _) = measures(&file);
-            assert!((twice - 2.0 * area * slope).abs() < 1e-12, "{points:?} {place}: {twice}");
+            let file = parse_valid(&format!("f{face}\n{text}"));
+            let slope = if plane == "x y x" { 2.0_f64.sqrt() } else { 1.0 };
+            let (twice, _) = area_and_volume(&file);
+            assert!((twice - 2.0 * area * slope).abs() < 1e-12, "{points:?} {plane}: {twice}");
             assert_eq!(file.mesh.triangles.len(), points.len() - 2);
         }
     }
 }
 
 #[test]
-fn odd_polygons_stay_fans() {
-    // all in one point, crossing itself, and too large for a cross product
+fn degenerate_polygons_stay_fans() {
+    // a single point, self-intersecting, and overflowing in the cross product
     let cases = [
         "0 0 0 0 0 0 0 0 0 0 0 0",
         "0 0 0 1 1 0 1 0 0 0 1 0",
@@ -132,61 +133,82 @@ fn odd_polygons_stay_fans() {
     for numbers in cases {
         let words: Vec<&str> = numbers.split(' ').collect();
         let text: String = words.chunks(3).map(|p| format!("v {}\n", p.join(" "))).collect();
-        assert_eq!(good(&format!("{text}f 1 2 3 4\n")).mesh.triangles.len(), 2);
+        assert_eq!(parse_valid(&format!("{text}f 1 2 3 4\n")).mesh.triangles.len(), 2);
     }
 }
 
 #[test]
-fn a_polygon_of_a_million_corners_takes_no_hour() {
+fn polygons_with_many_corners_take_bounded_time() {
     let mut text = String::new();
     let mut face = String::from("f");
     for i in 0..300_000 {
         text += &format!("v {} {} 0\n", i % 7, i % 11);
         face += &format!(" {}", i + 1);
     }
-    assert_eq!(good(&format!("{text}{face}\n")).mesh.triangles.len(), 299_998);
+    assert_eq!(parse_valid(&format!("{text}{face}\n")).mesh.triangles.len(), 299_998);
 }
 
 #[test]
-fn faces_out_of_range() {
-    says(
-        &bad(&format!("{SQUARE}f 1 2 9000\n")),
+fn out_of_range_indices_are_rejected() {
+    assert_contains(
+        &parse_invalid(&format!("{SQUARE}f 1 2 9000\n")),
         &["line 5, column 7: face refers to vertex 9000, but the file has only 4 vertices"],
     );
-    says(
-        &bad(&format!("{SQUARE}f 1 2 -5\n")),
+    assert_contains(
+        &parse_invalid(&format!("{SQUARE}f 1 2 -5\n")),
         &["vertex -5, but only 4 vertices are given before it"],
     );
-    says(&bad(&format!("{SQUARE}f 0 1 2\n")), &["vertex 0, but vertices count from 1"]);
-    says(&bad(&format!("{SQUARE}f 1 2 99999999999999999999999\n")), &["99999999999999999999999"]);
-    says(&bad(&format!("{SQUARE}f 1 2 -99999999999999999999999\n")), &["only 4 vertices"]);
-    says(&bad(&format!("{SQUARE}f 1 2 4294967296\n")), &["vertex 4294967296"]);
+    assert_contains(
+        &parse_invalid(&format!("{SQUARE}f 0 1 2\n")),
+        &["vertex 0, but vertices count from 1"],
+    );
+    assert_contains(
+        &parse_invalid(&format!("{SQUARE}f 1 2 99999999999999999999999\n")),
+        &["99999999999999999999999"],
+    );
+    assert_contains(
+        &parse_invalid(&format!("{SQUARE}f 1 2 -99999999999999999999999\n")),
+        &["only 4 vertices"],
+    );
+    assert_contains(&parse_invalid(&format!("{SQUARE}f 1 2 4294967296\n")), &["vertex 4294967296"]);
 }
 
 #[test]
-fn malformed_statements() {
-    says(&bad("v 1 2\n"), &["line 1", "the z coordinate is missing"]);
-    says(&bad("v 1 2 x3\n"), &["column 7", "the z coordinate is `x3`, which is not a number"]);
-    says(&bad("v nan 0 0\n"), &["must be finite"]);
-    says(&bad("v 0 -inf 0\n"), &["y coordinate", "must be finite"]);
-    says(&bad("v 0 1e999 0\n"), &["larger than a double"]);
-    says(&bad("v 1 2 3 4 5 6 7 8 9\n"), &["9 numbers"]);
-    says(&bad(&format!("{SQUARE}f 1 2\n")), &["line 5", "2 corners; 3 or more"]);
-    says(&bad(&format!("{SQUARE}f 1 2 3.5\n")), &["no corner of a face"]);
-    says(&bad(&format!("{SQUARE}f 1 2 3/x\n")), &["`3/x`"]);
-    says(&bad(&format!("{SQUARE}f 1 2 3/1/1/1\n")), &["`3/1/1/1`"]);
-    says(&bad(&format!("{SQUARE}{{\"a\": 1}}\n")), &["is no OBJ statement"]);
-    says(&bad("v 1 2 \\\n x\n"), &["line 2, column 2"]);
+fn malformed_statements_are_rejected() {
+    assert_contains(&parse_invalid("v 1 2\n"), &["line 1", "the z coordinate is missing"]);
+    assert_contains(
+        &parse_invalid("v 1 2 x3\n"),
+        &["column 7", "the z coordinate is `x3`, which is not a number"],
+    );
+    assert_contains(&parse_invalid("v nan 0 0\n"), &["must be finite"]);
+    assert_contains(&parse_invalid("v 0 -inf 0\n"), &["y coordinate", "must be finite"]);
+    assert_contains(&parse_invalid("v 0 1e999 0\n"), &["larger than a double"]);
+    assert_contains(&parse_invalid("v 1 2 3 4 5 6 7 8 9\n"), &["9 numbers"]);
+    assert_contains(
+        &parse_invalid(&format!("{SQUARE}f 1 2\n")),
+        &["line 5", "2 corners; 3 or more"],
+    );
+    assert_contains(&parse_invalid(&format!("{SQUARE}f 1 2 3.5\n")), &["no corner of a face"]);
+    assert_contains(&parse_invalid(&format!("{SQUARE}f 1 2 3/x\n")), &["`3/x`"]);
+    assert_contains(&parse_invalid(&format!("{SQUARE}f 1 2 3/1/1/1\n")), &["`3/1/1/1`"]);
+    assert_contains(&parse_invalid(&format!("{SQUARE}{{\"a\": 1}}\n")), &["is no OBJ statement"]);
+    assert_contains(&parse_invalid("v 1 2 \\\n x\n"), &["line 2, column 2"]);
 }
 
 #[test]
-fn files_that_are_no_obj() {
-    says(&bad(""), &["empty"]);
-    says(&bad("# nothing\nvn 0 0 1\n"), &["no vertices"]);
-    says(&bad("v\u{0}1 2 3\n"), &["at byte 1", "not a text file"]);
-    says(&super::bad(Format::Obj, b"\xff\xfev\0 \0"), &["UTF-16"]);
-    says(&super::bad(Format::Obj, &super::samples::stl_text()), &["no vertices", "looks like STL"]);
-    says(&super::bad(Format::Obj, &super::samples::glb()), &["looks like glTF"]);
-    // what can not be shown is not shown
-    assert!(bad(&format!("\u{1b}[31m{}", "x".repeat(10_000))).len() < 300);
+fn files_of_other_formats_are_rejected() {
+    assert_contains(&parse_invalid(""), &["empty"]);
+    assert_contains(&parse_invalid("# nothing\nvn 0 0 1\n"), &["no vertices"]);
+    assert_contains(&parse_invalid("v\u{0}1 2 3\n"), &["at byte 1", "not a text file"]);
+    assert_contains(&super::parse_invalid(Format::Obj, b"\xff\xfev\0 \0"), &["UTF-16"]);
+    assert_contains(
+        &super::parse_invalid(Format::Obj, &super::samples::stl_text()),
+        &["no vertices", "looks like STL"],
+    );
+    assert_contains(
+        &super::parse_invalid(Format::Obj, &super::samples::glb()),
+        &["looks like glTF"],
+    );
+    // control characters and long words are not printed
+    assert!(parse_invalid(&format!("\u{1b}[31m{}", "x".repeat(10_000))).len() < 300);
 }

@@ -1,19 +1,19 @@
 use tumble_io::mesh::{Format, MeshFile};
 
 use super::samples::ply;
-use super::{says, v};
+use super::{assert_contains, v};
 
 const XYZ: &str = "property double x\nproperty double y\nproperty double z\n";
 const LIST: &str = "property list uchar int vertex_indices\n";
 
 #[track_caller]
-fn good(text: &str) -> MeshFile {
-    super::good(Format::Ply, text.as_bytes())
+fn parse_valid(text: &str) -> MeshFile {
+    super::parse_valid(Format::Ply, text.as_bytes())
 }
 
 #[track_caller]
-fn bad(bytes: impl AsRef<[u8]>) -> String {
-    super::bad(Format::Ply, bytes.as_ref())
+fn parse_invalid(bytes: impl AsRef<[u8]>) -> String {
+    super::parse_invalid(Format::Ply, bytes.as_ref())
 }
 
 fn ascii(vertices: usize, faces: usize, body: &str) -> String {
@@ -23,103 +23,118 @@ fn ascii(vertices: usize, faces: usize, body: &str) -> String {
 }
 
 #[test]
-fn numbers_are_kept_at_double_precision() {
-    let file = good(&ascii(3, 0, "0.1 1. .5\n-1e-7 +2 3\n0.1 1. .5"));
+fn numbers_are_read_in_double_precision() {
+    let file = parse_valid(&ascii(3, 0, "0.1 1. .5\n-1e-7 +2 3\n0.1 1. .5"));
     assert_eq!(file.mesh.vertices, [v(0.1, 1.0, 0.5), v(-1e-7, 2.0, 3.0), v(0.1, 1.0, 0.5)]);
     assert!(file.mesh.triangles.is_empty());
     assert!(!file.welded);
 }
 
 #[test]
-fn polygons_become_fans_and_other_properties_are_passed_over() {
+fn polygons_become_fans_and_other_properties_are_ignored() {
     let text = "ply\r\nformat ascii 1.0\r\ncomment c\r\nobj_info o\r\nelement face 2\r\nproperty uchar flags\r\nproperty list uint8 uint32 vertex_index\r\nproperty list uchar float uv\r\nelement vertex 5\r\nproperty float nx\r\nproperty int16 z\r\nproperty float64 x\r\nproperty float y\r\nelement edge 1\r\nproperty int a\r\nend_header\r\n7 5 0 1 2 3 4 0\r\n\r\n7 3 4 3 2 2 0.5 nan\r\nnan 3 1 2\r\nnan 3 2 2\r\nnan 3 3 3\r\nnan 3 2 4\r\nnan 3 1 4\r\n9\r\n";
-    let file = good(text);
+    let file = parse_valid(text);
     assert_eq!(file.mesh.vertices[0], v(1.0, 2.0, 3.0));
     assert_eq!(file.mesh.triangles, [[0, 1, 2], [0, 2, 3], [0, 3, 4], [4, 3, 2]]);
     assert_eq!(file.face_count, 2);
 }
 
 #[test]
-fn strips_become_triangles() {
+fn triangle_strips_become_triangles() {
     let text = ascii(5, 1, "0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n8 0 1 2 3 -1 2 3 4\n")
         .replace("element face", "element tristrips");
-    assert_eq!(good(&text).mesh.triangles, [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+    assert_eq!(parse_valid(&text).mesh.triangles, [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
 }
 
 #[test]
-fn headers_that_promise_too_much() {
+fn excessive_counts_are_handled_without_reading() {
     for format in ["ascii", "binary_little_endian"] {
         let text = ascii(4_000_000_000, 0, "1 2 3\n").replace("ascii", format);
-        says(&bad(text), &["4000000000 times `vertex`", "truncated"]);
+        assert_contains(&parse_invalid(text), &["4000000000 times `vertex`", "truncated"]);
         let text = ascii(1, 0, "1 2 3\n").replace("vertex 1", "vertex 18446744073709551615");
-        says(&bad(text.replace("ascii", format)), &["truncated"]);
+        assert_contains(&parse_invalid(text.replace("ascii", format)), &["truncated"]);
     }
-    // nothing is read for elements without properties
+    // elements without properties have no data
     let text = ascii(1, 0, "1 2 3\n")
         .replace("end_header", "element air 18446744073709551615\nend_header");
-    assert_eq!(good(&text).mesh.vertices.len(), 1);
-    // a list of four thousand million entries
-    says(
-        &bad(ascii(1, 1, "1 2 3\n4000000000 0 0 0\n").replace("uchar", "uint")),
+    assert_eq!(parse_valid(&text).mesh.vertices.len(), 1);
+    // a list of four billion entries
+    assert_contains(
+        &parse_invalid(ascii(1, 1, "1 2 3\n4000000000 0 0 0\n").replace("uchar", "uint")),
         &["line 11", "missing"],
     );
     let mut bytes = ply("binary_little_endian");
     let text =
         String::from_utf8_lossy(&bytes[..bytes.len() - 120]).replace("list uchar", "list uint");
     bytes = [text.as_bytes(), &[0xff; 200]].concat();
-    says(&bad(&bytes), &["at byte"]);
+    assert_contains(&parse_invalid(&bytes), &["at byte"]);
 }
 
 #[test]
-fn truncated_binary_files() {
+fn truncated_binary_files_are_rejected() {
     let bytes = ply("binary_big_endian");
     for length in 0..bytes.len() {
-        bad(&bytes[..length]);
+        parse_invalid(&bytes[..length]);
     }
-    says(&bad(&bytes[..bytes.len() - 1]), &["at byte", "truncated"]);
+    assert_contains(&parse_invalid(&bytes[..bytes.len() - 1]), &["at byte", "truncated"]);
 }
 
 #[test]
-fn malformed_headers() {
-    says(&bad(""), &["empty"]);
-    says(&bad("plyx\n"), &["does not begin with `ply`"]);
-    says(&bad("ply\nformat ascii 1.0\n"), &["without `end_header`"]);
-    says(&bad("ply\nend_header\n"), &["no line `format`"]);
-    says(&bad("ply\nformat utf8 1.0\n"), &["`utf8`", "binary_big_endian"]);
-    says(&bad("ply\nproperty int x\n"), &["must follow an element"]);
-    says(&bad("ply\nelement vertex many\n"), &["`many`", "whole number"]);
-    says(
-        &bad("ply\nelement vertex 1\nproperty real x\n"),
+fn malformed_headers_are_rejected() {
+    assert_contains(&parse_invalid(""), &["empty"]);
+    assert_contains(&parse_invalid("plyx\n"), &["does not begin with `ply`"]);
+    assert_contains(&parse_invalid("ply\nformat ascii 1.0\n"), &["without `end_header`"]);
+    assert_contains(&parse_invalid("ply\nend_header\n"), &["no line `format`"]);
+    assert_contains(&parse_invalid("ply\nformat utf8 1.0\n"), &["`utf8`", "binary_big_endian"]);
+    assert_contains(&parse_invalid("ply\nproperty int x\n"), &["must follow an element"]);
+    assert_contains(&parse_invalid("ply\nelement vertex many\n"), &["`many`", "whole number"]);
+    assert_contains(
+        &parse_invalid("ply\nelement vertex 1\nproperty real x\n"),
         &["line 3, column 10", "`real`", "double"],
     );
-    says(&bad("ply\nelement vertex 1\nproperty int\n"), &["no name"]);
-    says(&bad("ply\nelement face 1\nproperty list float int a\n"), &["whole-number"]);
-    says(&bad("ply\nfoo\n"), &["`foo`"]);
-    says(&bad("ply\nformat ascii 1.0\nend_header\n"), &["exactly one `element vertex`"]);
-    says(&bad(ascii(1, 0, "1 2 3\n").replace("double y", "double q")), &["no number `y`"]);
-    says(&bad(ascii(0, 0, "")), &["no vertices"]);
-    says(
-        &bad(ascii(1, 1, "1 2 3\n3 0 0 0\n").replace("vertex_indices", "corners")),
+    assert_contains(&parse_invalid("ply\nelement vertex 1\nproperty int\n"), &["no name"]);
+    assert_contains(
+        &parse_invalid("ply\nelement face 1\nproperty list float int a\n"),
+        &["whole-number"],
+    );
+    assert_contains(&parse_invalid("ply\nfoo\n"), &["`foo`"]);
+    assert_contains(
+        &parse_invalid("ply\nformat ascii 1.0\nend_header\n"),
+        &["exactly one `element vertex`"],
+    );
+    assert_contains(
+        &parse_invalid(ascii(1, 0, "1 2 3\n").replace("double y", "double q")),
+        &["no number `y`"],
+    );
+    assert_contains(&parse_invalid(ascii(0, 0, "")), &["no vertices"]);
+    assert_contains(
+        &parse_invalid(ascii(1, 1, "1 2 3\n3 0 0 0\n").replace("vertex_indices", "corners")),
         &["vertex_indices"],
     );
 }
 
 #[test]
-fn malformed_bodies() {
-    says(&bad(ascii(1, 0, "1 2\n1 1 1\n")), &["line 10", "missing"]);
-    says(&bad(ascii(1, 0, "1 2 3 4\n")), &["line 10", "more values"]);
-    says(&bad(ascii(1, 0, "1 2 3\n4 5 6\n")), &["line 11", "goes on"]);
-    says(&bad(ascii(2, 0, "1 2 3\n\n\n\n\n\n\n")), &["ends before its last element"]);
-    says(&bad(ascii(1, 0, "1 nan 3\n")), &["must be finite"]);
-    says(&bad(ascii(1, 0, "1 2e999 3\n")), &["larger than a double"]);
-    says(&bad(ascii(1, 0, "1 two 3\n")), &["`two`", "column 3"]);
-    says(&bad(ascii(1, 1, "1 2 3\n3 0 0 1\n")), &["vertex 1, but there are only 1 (0 to 0)"]);
-    says(&bad(ascii(1, 1, "1 2 3\n3 0 0 -1\n")), &["vertex -1"]);
-    says(&bad(ascii(1, 1, "1 2 3\n3 0 0 0.5\n")), &["whole number"]);
-    says(&bad(ascii(1, 1, "1 2 3\n2 0 0\n")), &["2 corners"]);
-    says(&bad(ascii(1, 1, "1 2 3\n-3 0 0\n")), &["-3 entries"]);
+fn malformed_bodies_are_rejected() {
+    assert_contains(&parse_invalid(ascii(1, 0, "1 2\n1 1 1\n")), &["line 10", "missing"]);
+    assert_contains(&parse_invalid(ascii(1, 0, "1 2 3 4\n")), &["line 10", "more values"]);
+    assert_contains(&parse_invalid(ascii(1, 0, "1 2 3\n4 5 6\n")), &["line 11", "goes on"]);
+    assert_contains(
+        &parse_invalid(ascii(2, 0, "1 2 3\n\n\n\n\n\n\n")),
+        &["ends before its last element"],
+    );
+    assert_contains(&parse_invalid(ascii(1, 0, "1 nan 3\n")), &["must be finite"]);
+    assert_contains(&parse_invalid(ascii(1, 0, "1 2e999 3\n")), &["larger than a double"]);
+    assert_contains(&parse_invalid(ascii(1, 0, "1 two 3\n")), &["`two`", "column 3"]);
+    assert_contains(
+        &parse_invalid(ascii(1, 1, "1 2 3\n3 0 0 1\n")),
+        &["vertex 1, but there are only 1 (0 to 0)"],
+    );
+    assert_contains(&parse_invalid(ascii(1, 1, "1 2 3\n3 0 0 -1\n")), &["vertex -1"]);
+    assert_contains(&parse_invalid(ascii(1, 1, "1 2 3\n3 0 0 0.5\n")), &["whole number"]);
+    assert_contains(&parse_invalid(ascii(1, 1, "1 2 3\n2 0 0\n")), &["2 corners"]);
+    assert_contains(&parse_invalid(ascii(1, 1, "1 2 3\n-3 0 0\n")), &["-3 entries"]);
     let mut bytes = ply("binary_little_endian");
     let at = bytes.len() - 52 - 4 * 17;
     bytes[at..at + 4].copy_from_slice(&f32::INFINITY.to_le_bytes());
-    says(&bad(&bytes), &[&format!("at byte {at}"), "must be finite"]);
+    assert_contains(&parse_invalid(&bytes), &[&format!("at byte {at}"), "must be finite"]);
 }

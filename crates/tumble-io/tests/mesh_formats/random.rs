@@ -1,12 +1,12 @@
-//! No bytes at all make a reader panic: random ones, and valid files with damage.
+//! The readers do not panic on random bytes or on damaged valid files.
 
 use proptest::prelude::*;
 use tumble_io::mesh::{Format, parse_mesh};
 
 use super::samples;
 
-/// Reads, and holds what comes back to the promises of a mesh.
-fn try_read(format: Format, bytes: &[u8]) {
+/// Parses the bytes and checks the invariants of the mesh or the length of the message.
+fn check_parse(format: Format, bytes: &[u8]) {
     for weld in [false, true] {
         match parse_mesh(format, bytes, None, Some(weld)) {
             Ok(file) => {
@@ -19,9 +19,9 @@ fn try_read(format: Format, bytes: &[u8]) {
     }
 }
 
-/// Bytes to overwrite, insert, remove or double.
+/// Edits of a file: the kind of edit, its position, and the bytes to overwrite, insert or remove.
 fn damage() -> impl Strategy<Value = Vec<(u8, prop::sample::Index, Vec<u8>)>> {
-    let telling = prop::sample::select(vec![
+    let token = prop::sample::select(vec![
         b"0".as_slice(),
         b"-1",
         b"9",
@@ -47,7 +47,7 @@ fn damage() -> impl Strategy<Value = Vec<(u8, prop::sample::Index, Vec<u8>)>> {
         b",0",
     ])
     .prop_map(<[u8]>::to_vec);
-    let piece = prop_oneof![telling, prop::collection::vec(any::<u8>(), 1..6)];
+    let piece = prop_oneof![token, prop::collection::vec(any::<u8>(), 1..6)];
     prop::collection::vec((0_u8..4, any::<prop::sample::Index>(), piece), 1..6)
 }
 
@@ -68,8 +68,8 @@ fn damaged(mut bytes: Vec<u8>, damage: Vec<(u8, prop::sample::Index, Vec<u8>)>) 
     bytes
 }
 
-/// Letters, digits and signs that formats are made of, so that more gets past the first check.
-fn wordy() -> impl Strategy<Value = Vec<u8>> {
+/// Sequences of tokens of the text formats, which get further into the readers than random bytes.
+fn format_tokens() -> impl Strategy<Value = Vec<u8>> {
     let words = prop::sample::select(vec![
         "v ",
         "f ",
@@ -97,34 +97,34 @@ fn wordy() -> impl Strategy<Value = Vec<u8>> {
     prop::collection::vec(words, 0..60).prop_map(|words| words.concat().into_bytes())
 }
 
-macro_rules! never_panics {
+macro_rules! panic_tests {
     ($($name:ident: $format:expr, $start:expr, $samples:expr;)*) => {
         $(mod $name {
             use super::*;
             proptest! {
                 #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..Default::default() })]
                 #[test]
-                fn on_random_bytes(bytes in prop::collection::vec(any::<u8>(), 0..400), words in wordy(), with_start: bool) {
+                fn random_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..400), words in format_tokens(), with_start: bool) {
                     for rest in [bytes, words] {
                         let start: &[u8] = if with_start { $start } else { b"" };
-                        try_read($format, &[start, &rest].concat());
+                        check_parse($format, &[start, &rest].concat());
                     }
                 }
                 #[test]
-                fn on_damaged_files(sample in prop::sample::select($samples), damage in damage()) {
-                    try_read($format, &damaged(sample, damage));
+                fn damaged_files_do_not_panic(sample in prop::sample::select($samples), damage in damage()) {
+                    check_parse($format, &damaged(sample, damage));
                 }
             }
         })*
     };
 }
 
-never_panics! {
+panic_tests! {
     obj: Format::Obj, b"v 0 0 0\nv 0 1 2\nv 3 4 5\n", vec![samples::obj(), b"v 0 0 0\nv 1 0 0\nv 0.2 0.2 0\nv 0 1 0\nf 1 2 3 4\nf -1/2/3 -2//1 -3/1\n".to_vec()];
     stl: Format::Stl, b"solid ", vec![samples::stl_text(), samples::stl_binary(b""), samples::stl_binary(b"solid ")];
     ply: Format::Ply, b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 7\nproperty list uint uchar vertex_index\nend_header\n", vec![
         samples::ply("ascii"), samples::ply("binary_little_endian"), samples::ply("binary_big_endian"),
         [samples::ply("ascii"), b"\n".to_vec()].concat(),
     ];
-    gltf: Format::Gltf, b"glTF\x02\0\0\0", vec![samples::gltf(), samples::glb(), samples::glb_of(&samples::gltf_json("", r#"{"children":[1,2],"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]},{"mesh":0,"scale":[-1,1,1]},{"mesh":0,"rotation":[0,0,1,0]}"#, ""), &samples::gltf_data())];
+    gltf: Format::Gltf, b"glTF\x02\0\0\0", vec![samples::gltf(), samples::glb(), samples::glb_from(&samples::gltf_json("", r#"{"children":[1,2],"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]},{"mesh":0,"scale":[-1,1,1]},{"mesh":0,"rotation":[0,0,1,0]}"#, ""), &samples::gltf_data())];
 }

@@ -5,7 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 
 pub const VERTICES: [[f32; 3]; 4] =
     [[0.0, 0.0, 0.0], [1.5, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, -0.25]];
-/// The order in which STL meets the vertices is that of `VERTICES`.
+/// The first occurrences of the vertices, in the order of an STL file, have the order of `VERTICES`.
 pub const TRIANGLES: [[u16; 3]; 4] = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
 
 pub fn obj() -> Vec<u8> {
@@ -51,7 +51,7 @@ pub fn ply(format: &str) -> Vec<u8> {
     );
     let mut bytes = header.into_bytes();
     let big = format == "binary_big_endian";
-    let mut put = |le: &[u8]| {
+    let mut push = |le: &[u8]| {
         let start = bytes.len();
         bytes.extend(le);
         if big {
@@ -60,34 +60,34 @@ pub fn ply(format: &str) -> Vec<u8> {
     };
     if format == "ascii" {
         for [x, y, z] in VERTICES {
-            put(format!("{x} {y} {z} 255\n").as_bytes());
+            push(format!("{x} {y} {z} 255\n").as_bytes());
         }
         for [a, b, c] in TRIANGLES {
-            put(format!("3 {a} {b} {c}\n").as_bytes());
+            push(format!("3 {a} {b} {c}\n").as_bytes());
         }
         return bytes;
     }
     for [x, y, z] in VERTICES {
-        put(&x.to_le_bytes());
-        put(&f64::from(y).to_le_bytes());
-        put(&z.to_le_bytes());
-        put(&[255]);
+        push(&x.to_le_bytes());
+        push(&f64::from(y).to_le_bytes());
+        push(&z.to_le_bytes());
+        push(&[255]);
     }
     for triangle in TRIANGLES {
-        put(&[3]);
-        triangle.iter().for_each(|&i| put(&i32::from(i).to_le_bytes()));
+        push(&[3]);
+        triangle.iter().for_each(|&i| push(&i32::from(i).to_le_bytes()));
     }
     bytes
 }
 
-/// Positions (48 bytes), then indices (24 bytes).
+/// The buffer: positions (48 bytes), then indices (24 bytes).
 pub fn gltf_data() -> Vec<u8> {
     let mut bytes: Vec<u8> = VERTICES.iter().flatten().flat_map(|c| c.to_le_bytes()).collect();
     bytes.extend(TRIANGLES.iter().flatten().flat_map(|i| i.to_le_bytes()));
     bytes
 }
 
-/// A document with one mesh of that data; `nodes` and `extra` are JSON.
+/// A document with one mesh of the data of [`gltf_data`]; `nodes` and `extra` are JSON.
 pub fn gltf_json(buffer: &str, nodes: &str, extra: &str) -> String {
     format!(
         r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{nodes}],
@@ -108,7 +108,7 @@ pub fn gltf() -> Vec<u8> {
     gltf_json(&data_uri(), r#"{"mesh":0}"#, "").into_bytes()
 }
 
-pub fn glb_of(json: &str, data: &[u8]) -> Vec<u8> {
+pub fn glb_from(json: &str, data: &[u8]) -> Vec<u8> {
     let mut json = json.as_bytes().to_vec();
     json.resize(json.len().next_multiple_of(4), b' ');
     let mut bytes = b"glTF".to_vec();
@@ -123,5 +123,5 @@ pub fn glb_of(json: &str, data: &[u8]) -> Vec<u8> {
 }
 
 pub fn glb() -> Vec<u8> {
-    glb_of(&gltf_json("", r#"{"mesh":0}"#, ""), &gltf_data())
+    glb_from(&gltf_json("", r#"{"mesh":0}"#, ""), &gltf_data())
 }

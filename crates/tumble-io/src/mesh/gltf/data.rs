@@ -79,17 +79,17 @@ impl<'a> Buffers<'a> {
         Self { document, binary_chunk, folder, loaded, side_files }
     }
 
-    /// The number of elements of an accessor, as the document promises it.
+    /// The number of elements of an accessor, as the document declares it.
     pub(super) fn count(&self, accessor: usize) -> Result<usize, ReadError> {
         Ok(self.accessor(accessor)?.count)
     }
 
-    /// The bytes that have been loaded from elsewhere than the file itself.
+    /// Total size of the side files that have been loaded (bytes).
     pub(super) fn side_bytes(&self) -> usize {
         self.side_files.values().map(|bytes| bytes.len()).sum()
     }
 
-    /// Loads what an accessor needs, so that its promises can be held against it.
+    /// Loads the buffers of an accessor.
     pub(super) fn load(&mut self, accessor: usize) -> Result<(), ReadError> {
         let document = self.document;
         let accessor = self.accessor(accessor)?;
@@ -106,7 +106,7 @@ impl<'a> Buffers<'a> {
         get(&self.document.accessors, index, "accessor")
     }
 
-    /// Positions, once loaded.
+    /// The positions of an accessor whose buffers are loaded.
     pub(super) fn positions(&self, index: usize) -> Result<Vec<DVec3>, ReadError> {
         let accessor = self.accessor(index)?;
         if accessor.kind != Kind::Vec3 {
@@ -134,7 +134,7 @@ impl<'a> Buffers<'a> {
         }
     }
 
-    /// Indices of vertices, once loaded.
+    /// The vertex indices of an accessor whose buffers are loaded.
     pub(super) fn indices(&self, index: usize) -> Result<Vec<u32>, ReadError> {
         let accessor = self.accessor(index)?;
         let component = Component::from_code(accessor.component_type)?;
@@ -160,7 +160,7 @@ impl<'a> Buffers<'a> {
         Ok(indices)
     }
 
-    /// The elements of the accessor itself; none if only sparse values are given, on zeros.
+    /// The dense elements of an accessor; `None` if it has only sparse values, whose base is zero.
     fn dense(
         &self,
         accessor: &Accessor,

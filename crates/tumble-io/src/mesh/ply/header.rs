@@ -1,4 +1,4 @@
-//! The header of a PLY file: what it promises, and whether that can be.
+//! Reads the header of a PLY file and checks it against the size of the file.
 
 use super::super::error::ReadError;
 use super::super::text::{Words, show};
@@ -107,22 +107,22 @@ impl Header {
         Ok(Self { encoding, elements })
     }
 
-    /// Compares what the header promises with the bytes that follow, before anything is read.
+    /// Checks that the declared elements fit into the bytes that follow, before any is read.
     pub(super) fn check_size(&self, available: usize, words: &Words<'_>) -> Result<(), ReadError> {
-        let mut promised = 0_u64;
+        let mut needed = 0_u64;
         for element in &self.elements {
-            // in text, a value has at least a digit and a blank
+            // a text value takes at least one digit and one separator
             let each: usize = match self.encoding {
                 Encoding::Text => 2 * element.properties.len(),
                 Encoding::Binary { .. } => {
                     element.properties.iter().map(|p| p.list.unwrap_or(p.scalar).size()).sum()
                 }
             };
-            promised = promised.saturating_add(element.count.saturating_mul(each as u64));
+            needed = needed.saturating_add(element.count.saturating_mul(each as u64));
             // the last line may end without a line break
-            if promised > available as u64 + 1 {
+            if needed > available as u64 + 1 {
                 return Err(words.line_error(format!(
-                    "the header promises {} times {}, for which the {available} bytes after it can not suffice: the file is truncated, or no PLY",
+                    "the header promises {} times {}, for which the {available} bytes after it are too few: the file is truncated, or no PLY",
                     element.count,
                     show(&element.name)
                 )));
@@ -131,7 +131,7 @@ impl Header {
         Ok(())
     }
 
-    /// Checks the elements that make the mesh, and gives the number of vertices.
+    /// Checks the vertex and face elements and returns the number of vertices.
     pub(super) fn vertex_count(&self) -> Result<u32, String> {
         let mut found = self.elements.iter().filter(|e| e.name == b"vertex");
         let (Some(vertex), None) = (found.next(), found.next()) else {
@@ -154,7 +154,7 @@ impl Header {
         }
     }
 
-    /// Checks that faces, if there are any, name their vertices.
+    /// Checks that faces, if there are any, have a list of vertices.
     fn check_faces(&self) -> Result<(), String> {
         let is_corners = |p: &Property| {
             matches!(p.name.as_slice(), b"vertex_indices" | b"vertex_index")
@@ -162,8 +162,8 @@ impl Header {
                 && !p.scalar.is_float()
         };
         for element in &self.elements {
-            let makes_faces = matches!(element.name.as_slice(), b"face" | b"tristrips");
-            if makes_faces
+            let is_face = matches!(element.name.as_slice(), b"face" | b"tristrips");
+            if is_face
                 && element.count > 0
                 && element.properties.iter().filter(|p| is_corners(p)).count() != 1
             {
@@ -211,7 +211,7 @@ fn read_property(words: &mut Words<'_>) -> Result<Property, ReadError> {
             words.error(format!("unknown type {}; allowed are {allowed}, and list", show(word)))
         })
     };
-    // look whether it is a list
+    // a list has its count type first
     let mut ahead = words.clone();
     let list = if ahead.next_word() == Some(b"list") {
         words.next_word();
