@@ -12,7 +12,7 @@ pub enum SurfaceError {
     /// The holes are too large to distinguish inside and outside; see [`SignedDistance`](crate::SignedDistance).
     Open {
         /// The faulty edges.
-        closedness: Watertightness,
+        watertightness: Watertightness,
         /// The number of holes; holes that share a vertex count as one.
         holes: usize,
         /// Length of the longest boundary of a hole (m).
@@ -40,14 +40,21 @@ impl std::fmt::Display for SurfaceError {
                 f,
                 "the mesh has no triangles, so other bodies cannot collide with it; give it triangles, or use `surface = \"spheres\"`"
             ),
-            Self::WronglyWound(closedness) => write!(
+            Self::WronglyWound(watertightness) => write!(
                 f,
-                "{closedness}; wind all triangles counter-clockwise seen from outside, or use `surface = \"spheres\"`"
+                "{watertightness}; wind all triangles counter-clockwise seen from outside, or use `surface = \"spheres\"`"
             ),
-            Self::Open { closedness, holes, largest, largest_allowed, total, total_allowed } => {
+            Self::Open {
+                watertightness,
+                holes,
+                largest,
+                largest_allowed,
+                total,
+                total_allowed,
+            } => {
                 write!(
                     f,
-                    "{closedness}; the boundary of the largest of {holes} hole(s) is {largest:.4} m long and all together {total:.4} m, \
+                    "{watertightness}; the boundary of the largest of {holes} hole(s) is {largest:.4} m long and all together {total:.4} m, \
                      where {largest_allowed:.4} m and {total_allowed:.4} m are allowed; close the mesh, or use `surface = \"spheres\"`"
                 )
             }

@@ -173,7 +173,7 @@ fn check_edges(
     let unit = faces.iter().map(|face| face.frame.area()).sum::<f64>().sqrt();
     if largest > HOLE * unit || total > HOLES * unit {
         return Err(SurfaceError::Open {
-            closedness: mesh.watertightness(),
+            watertightness: mesh.watertightness(),
             holes: holes.len(),
             largest,
             largest_allowed: HOLE * unit,

@@ -68,7 +68,7 @@ impl std::fmt::Display for SolidError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::NoTriangles => write!(f, "the mesh has no triangles, so it bounds no solid"),
-            Self::Edges(closedness) => closedness.fmt(f),
+            Self::Edges(watertightness) => watertightness.fmt(f),
             Self::NoVolume => write!(f, "the mesh is closed but encloses no volume"),
             Self::OutOfRange { size } => out_of_range(f, *size),
         }
@@ -211,12 +211,12 @@ impl Mesh {
     /// beyond the range of doubles.
     pub fn solid_integrals(&self) -> Result<Integrals, SolidError> {
         let bounds = self.bounds().ok_or(SolidError::NoTriangles)?;
-        let closedness = self.watertightness();
-        if closedness.triangles == 0 {
+        let watertightness = self.watertightness();
+        if watertightness.triangles == 0 {
             return Err(SolidError::NoTriangles);
         }
-        if !closedness.is_closed() {
-            return Err(SolidError::Edges(closedness));
+        if !watertightness.is_closed() {
+            return Err(SolidError::Edges(watertightness));
         }
         let size = bounds.size();
         if !SIZES.contains(&size) {

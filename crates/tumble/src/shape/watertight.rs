@@ -27,7 +27,7 @@ pub struct FaultyEdge {
     pub fault: EdgeFault,
 }
 
-/// The result of [`Mesh::closedness`]: whether a mesh is watertight, and where it is not.
+/// The result of [`Mesh::watertightness`]: whether a mesh is watertight, and where it is not.
 ///
 /// Coincident vertices count as one, and triangles with two coincident corners are ignored. Texture seams
 /// and degenerate triangles therefore do not make a mesh open.

@@ -7,7 +7,7 @@ use crate::{Batch, BodyModel, Integrator, Model, Scratch, State, for_each_batch,
 
 /// Runs the stages `before` on all batches, computes the contact forces between bodies, and runs the stages `after`.
 ///
-/// [`contact`](crate::contact) describes the pipeline. Where no two bodies can touch, every batch goes through both groups
+/// The module `contact` describes the pipeline. Where no two bodies can touch, every batch goes through both groups
 /// of stages at once.
 pub fn around_body_contact(
     model: &Model,
