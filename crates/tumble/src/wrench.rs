@@ -56,7 +56,8 @@ pub struct BodyForces {
 }
 
 impl BodyForces {
-    /// Lines 3 and 4 of the basic system: total force F = Σ fᵢ and total torque τ = Σ (xᵢ − x) × fᵢ.
+    /// Lines 3 and 4 of the basic system: total force F = Σ fᵢ and torque τ = Σ (xᵢ − x) × fᵢ, as the sum over causes. The stages have
+    /// summed over the particles.
     pub fn total(&self) -> Wrench {
         self.gravity + self.drag + self.contact()
     }
