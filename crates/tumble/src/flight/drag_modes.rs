@@ -66,9 +66,9 @@ impl DragModes {
             let component =
                 |vector: &[f64; 6]| -> f64 { mode.iter().zip(vector).map(|(m, y)| m * y).sum() };
             let (a, b) = (DVec3::X * component(&motion), DVec3::X * component(&weight));
-            let glide = LinearDrag::new(time, c * rate);
-            loss += glide.loss(a, b);
-            let (_, end) = glide.advance(a, b);
+            let drag = LinearDrag::new(time, c * rate);
+            loss += drag.loss(a, b);
+            let (_, end) = drag.advance(a, b);
             for (sum, m) in change.iter_mut().zip(mode) {
                 *sum += m * (end.x - a.x);
             }

@@ -99,11 +99,11 @@ mod tests {
         let (v, g) = (DVec3::new(3.0, -2.0, 5.0), DVec3::new(0.3, -9.8, 0.1));
         for rate in [0.0, 1e-12, 1e-3, 0.24, 0.26, 0.49, 0.51, 1.0, 30.0, 5e3] {
             for time in [1e-3, 0.5, 1.0, -0.01] {
-                let glide = LinearDrag::new(time, rate);
-                let (displacement, end) = glide.advance(v, g);
+                let drag = LinearDrag::new(time, rate);
+                let (displacement, end) = drag.advance(v, g);
                 let lost = 0.5 * (v.length_squared() - end.length_squared()) + g.dot(displacement);
                 let kinetic = 0.5 * end.length_squared() + 0.5 * v.length_squared();
-                let error = (lost - glide.loss(v, g)).abs();
+                let error = (lost - drag.loss(v, g)).abs();
                 let bound = 1e-14 * (kinetic + displacement.length() * 10.0);
                 assert!(error < bound, "rate {rate}, time {time}: {error:e}");
             }

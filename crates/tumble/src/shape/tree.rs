@@ -1,9 +1,9 @@
 //! A bounding volume tree over the particles of a shape, with moments in its nodes.
 //!
-//! A *ramp* is an affine function of position: the depth of a particle behind a wall is one, the force of
-//! its spring and dashpot another. Over particles at which a ramp δ is positive, the sums Σ δ, Σ δ r and Σ δ²
+//! A tree sums affine functions of position: the depth of a particle behind a wall is one, the force of
+//! its spring and dashpot another. Over particles at which a function δ is positive, the sums Σ δ, Σ δ r and Σ δ²
 //! follow from the count, mean and covariance of the particles. Each node of the tree stores these moments
-//! and bounds, and only nodes cut by the zero plane of the ramp have to be opened. The result is exact.
+//! and bounds, and only nodes cut by the zero plane of the function have to be opened. The result is exact.
 
 use glam::{DMat3, DVec3};
 
@@ -54,7 +54,7 @@ pub(super) struct Moments {
     scatter: [f64; 6],
 }
 
-/// For which particles of a node a ramp is positive.
+/// For which particles of a node a function is positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Coverage {
     /// For all.
@@ -111,14 +111,14 @@ impl Node {
         (self.centre, self.half.length() * (1.0 + 1e-12))
     }
 
-    /// For which particles of the node the ramp is positive. A leaf is tested by its box only, since
+    /// For which particles of the node the function is positive. A leaf is tested by its box only, since
     /// opening it is as cheap as the second test.
     #[inline(always)]
-    pub fn coverage(&self, ramp: &AffineFunction, is_leaf: bool) -> Coverage {
-        let middle = ramp.at(self.centre);
-        let extent = ramp.slope.abs().dot(self.half);
+    pub fn coverage(&self, function: &AffineFunction, is_leaf: bool) -> Coverage {
+        let middle = function.at(self.centre);
+        let extent = function.slope.abs().dot(self.half);
         // within rounding of zero the particles are tested one by one
-        let rounding = 4.0 * f64::EPSILON * (ramp.offset.abs() + middle.abs() + extent);
+        let rounding = 4.0 * f64::EPSILON * (function.offset.abs() + middle.abs() + extent);
         if middle + extent < -rounding {
             return Coverage::None;
         }
@@ -128,7 +128,7 @@ impl Node {
         if is_leaf {
             return Coverage::Some;
         }
-        let (middle, extent) = (ramp.at(self.moments.mean), self.deviation(ramp.slope));
+        let (middle, extent) = (function.at(self.moments.mean), self.deviation(function.slope));
         if middle + extent < -rounding {
             Coverage::None
         } else if middle - extent > rounding {
@@ -138,19 +138,19 @@ impl Node {
         }
     }
 
-    /// An upper bound of the ramp over the node, from its scatter; close for planar nodes of any orientation.
+    /// An upper bound of the function over the node, from its scatter; close for planar nodes of any orientation.
     #[inline(always)]
-    pub fn upper_bound_from_scatter(&self, ramp: &AffineFunction) -> f64 {
-        ramp.at(self.moments.mean) + self.deviation(ramp.slope)
+    pub fn upper_bound_from_scatter(&self, function: &AffineFunction) -> f64 {
+        function.at(self.moments.mean) + self.deviation(function.slope)
     }
 
-    /// An upper bound of the ramp over the node, from its box.
+    /// An upper bound of the function over the node, from its box.
     #[inline(always)]
-    pub fn upper_bound_from_box(&self, ramp: &AffineFunction) -> f64 {
-        ramp.at(self.centre) + ramp.slope.abs().dot(self.half)
+    pub fn upper_bound_from_box(&self, function: &AffineFunction) -> f64 {
+        function.at(self.centre) + function.slope.abs().dot(self.half)
     }
 
-    /// A bound on the deviation of a ramp with this slope from its value at the mean.
+    /// A bound on the deviation of a function with this slope from its value at the mean.
     ///
     /// No value of a set deviates from the mean by more than the root of the sum of squared deviations, so
     /// the bound is small across a planar set of any orientation. It does not hold for weighted squares;

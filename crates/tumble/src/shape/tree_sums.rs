@@ -14,7 +14,7 @@ const STACK_SIZE: usize = 32;
 /// rounding, and the tolerance avoids visiting them all.
 const TOLERANCE: f64 = 1e-4;
 
-/// Sums of a ramp f over a set of particles, each multiplied by its weight.
+/// Sums of a function f over a set of particles, each multiplied by its weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct AffineSums {
     /// Σ f.
@@ -28,25 +28,25 @@ pub(crate) struct AffineSums {
 }
 
 impl Particles {
-    /// Sums of `ramp` over the particles at which it is positive; if `within` is given, it must be positive too.
+    /// Sums of `function` over the particles at which it is positive; if `within` is given, it must be positive too.
     pub(crate) fn sums(
         &self,
         level: Level,
-        ramp: &AffineFunction,
+        function: &AffineFunction,
         within: Option<&AffineFunction>,
     ) -> AffineSums {
         match (within, self.is_weighted()) {
             (None, false) => {
-                dispatch!(level, simd => self.sums_in::<_, 0, false>(simd, ramp, &[]))
+                dispatch!(level, simd => self.sums_in::<_, 0, false>(simd, function, &[]))
             }
             (Some(within), false) => {
-                dispatch!(level, simd => self.sums_in::<_, 1, false>(simd, ramp, &[*within]))
+                dispatch!(level, simd => self.sums_in::<_, 1, false>(simd, function, &[*within]))
             }
             (None, true) => {
-                dispatch!(level, simd => self.sums_in::<_, 0, true>(simd, ramp, &[]))
+                dispatch!(level, simd => self.sums_in::<_, 0, true>(simd, function, &[]))
             }
             (Some(within), true) => {
-                dispatch!(level, simd => self.sums_in::<_, 1, true>(simd, ramp, &[*within]))
+                dispatch!(level, simd => self.sums_in::<_, 1, true>(simd, function, &[*within]))
             }
         }
     }
@@ -56,7 +56,7 @@ impl Particles {
     fn sums_in<S: Simd, const N: usize, const WEIGHTED: bool>(
         &self,
         simd: S,
-        ramp: &AffineFunction,
+        function: &AffineFunction,
         within: &[AffineFunction; N],
     ) -> AffineSums {
         simd.vectorize(
@@ -67,21 +67,22 @@ impl Particles {
                 let mut stack = Stack::new(self.nodes());
                 while let Some((subtree, _)) = stack.pop() {
                     let node = self.node(subtree);
-                    let mut coverage = node.coverage(ramp, subtree.is_leaf());
-                    for ramp in within {
-                        coverage = coverage.and(node.coverage(ramp, subtree.is_leaf()));
+                    let mut coverage = node.coverage(function, subtree.is_leaf());
+                    for function in within {
+                        coverage = coverage.and(node.coverage(function, subtree.is_leaf()));
                     }
                     match coverage {
                         Coverage::None => {}
                         Coverage::All if WEIGHTED => {
-                            whole.add(self.weighted_moments(subtree), ramp);
+                            whole.add(self.weighted_moments(subtree), function);
                         }
-                        Coverage::All => whole.add(&node.moments, ramp),
+                        Coverage::All => whole.add(&node.moments, function),
                         Coverage::Some => match subtree.children() {
                             Some([a, b]) => stack.push_both((a, 0.0), (b, 0.0)),
                             None => {
                                 for group in self.groups(simd, subtree) {
-                                    let value = LaneAffine::positive(simd, &group, ramp, within);
+                                    let value =
+                                        LaneAffine::positive(simd, &group, function, within);
                                     let mut weighted = value;
                                     if WEIGHTED {
                                         weighted *= self.weights(simd, &group);
@@ -97,32 +98,32 @@ impl Particles {
         )
     }
 
-    /// The largest value of `ramp` over the particles, to a relative 10⁻⁴; zero if it is positive nowhere.
-    pub(crate) fn largest(&self, level: Level, ramp: &AffineFunction) -> f64 {
-        dispatch!(level, simd => self.largest_in(simd, ramp))
+    /// The largest value of `function` over the particles, to a relative 10⁻⁴; zero if it is positive nowhere.
+    pub(crate) fn largest(&self, level: Level, function: &AffineFunction) -> f64 {
+        dispatch!(level, simd => self.largest_in(simd, function))
     }
 
     #[inline(always)]
-    fn largest_in<S: Simd>(&self, simd: S, ramp: &AffineFunction) -> f64 {
+    fn largest_in<S: Simd>(&self, simd: S, function: &AffineFunction) -> f64 {
         simd.vectorize(
             #[inline(always)]
             || {
-                let values = LaneAffine::splat(simd, ramp);
+                let values = LaneAffine::splat(simd, function);
                 let mut best = 0.0f64;
                 let mut stack = Stack::new(self.nodes());
                 while let Some((subtree, bound)) = stack.pop() {
                     // a tight bound may exceed its particle by a rounding
-                    let rounding = 4.0 * f64::EPSILON * (ramp.offset.abs() + best);
+                    let rounding = 4.0 * f64::EPSILON * (function.offset.abs() + best);
                     let enough = best * (1.0 + TOLERANCE) + rounding;
                     if bound <= enough
-                        || self.node(subtree).upper_bound_from_scatter(ramp) <= enough
+                        || self.node(subtree).upper_bound_from_scatter(function) <= enough
                     {
                         continue;
                     }
                     match subtree.children() {
                         Some([a, b]) => {
                             let (of_a, of_b) =
-                                (self.upper_bound(a, ramp), self.upper_bound(b, ramp));
+                                (self.upper_bound(a, function), self.upper_bound(b, function));
                             if of_a < of_b {
                                 stack.push_both((b, of_b), (a, of_a));
                             } else {
@@ -141,26 +142,26 @@ impl Particles {
         )
     }
 
-    /// Appends the slots of all particles at which `ramp` is positive, in order.
+    /// Appends the slots of all particles at which `function` is positive, in order.
     pub(crate) fn collect_positive_slots(
         &self,
         level: Level,
-        ramp: &AffineFunction,
+        function: &AffineFunction,
         slots: &mut Vec<u32>,
     ) {
-        dispatch!(level, simd => self.list_positive_in(simd, ramp, slots));
+        dispatch!(level, simd => self.list_positive_in(simd, function, slots));
     }
 
     #[inline(always)]
-    fn list_positive_in<S: Simd>(&self, simd: S, ramp: &AffineFunction, slots: &mut Vec<u32>) {
+    fn list_positive_in<S: Simd>(&self, simd: S, function: &AffineFunction, slots: &mut Vec<u32>) {
         simd.vectorize(
             #[inline(always)]
             || {
-                let values = LaneAffine::splat(simd, ramp);
+                let values = LaneAffine::splat(simd, function);
                 let mut stack = Stack::new(self.nodes());
                 while let Some((subtree, _)) = stack.pop() {
                     let node = self.node(subtree);
-                    match (node.coverage(ramp, subtree.is_leaf()), subtree.children()) {
+                    match (node.coverage(function, subtree.is_leaf()), subtree.children()) {
                         (Coverage::None, _) => {}
                         (Coverage::Some, Some([a, b])) => stack.push_both((a, 0.0), (b, 0.0)),
                         _ => {
@@ -181,8 +182,8 @@ impl Particles {
     }
 
     #[inline(always)]
-    fn upper_bound(&self, subtree: Subtree, ramp: &AffineFunction) -> f64 {
-        self.node(subtree).upper_bound_from_box(ramp)
+    fn upper_bound(&self, subtree: Subtree, function: &AffineFunction) -> f64 {
+        self.node(subtree).upper_bound_from_box(function)
     }
 
     #[inline(always)]
@@ -223,13 +224,13 @@ impl Stack {
 impl AffineSums {
     /// Adds all particles of a node, by f(r) = f(r̄) − slope·(r − r̄) and Σ (r − r̄) = 0.
     #[inline(always)]
-    fn add(&mut self, moments: &Moments, ramp: &AffineFunction) {
+    fn add(&mut self, moments: &Moments, function: &AffineFunction) {
         let Moments { count, mean: place, .. } = *moments;
-        let mean = ramp.at(place);
-        let scattered = moments.scatter_times(ramp.slope);
+        let mean = function.at(place);
+        let scattered = moments.scatter_times(function.slope);
         self.sum += count * mean;
         self.moment += place * (count * mean) - scattered;
-        self.squares += count * mean * mean + ramp.slope.dot(scattered);
+        self.squares += count * mean * mean + function.slope.dot(scattered);
         self.largest = None;
     }
 
@@ -269,7 +270,7 @@ impl<S: Simd> LaneSums<S> {
     }
 }
 
-/// A ramp, the same in each lane.
+/// A function, the same in each lane.
 struct LaneAffine<S: Simd> {
     offset: f64x8<S>,
     slope: Vec3x8<S>,
@@ -277,8 +278,11 @@ struct LaneAffine<S: Simd> {
 
 impl<S: Simd> LaneAffine<S> {
     #[inline(always)]
-    fn splat(simd: S, ramp: &AffineFunction) -> Self {
-        Self { offset: f64x8::splat(simd, ramp.offset), slope: Vec3x8::splat(simd, ramp.slope) }
+    fn splat(simd: S, function: &AffineFunction) -> Self {
+        Self {
+            offset: f64x8::splat(simd, function.offset),
+            slope: Vec3x8::splat(simd, function.slope),
+        }
     }
 
     #[inline(always)]
@@ -286,18 +290,18 @@ impl<S: Simd> LaneAffine<S> {
         self.offset - self.slope.dot(place)
     }
 
-    /// The values of the ramp where it and `within`, if given, are positive; zero elsewhere.
+    /// The values of the function where it and `within`, if given, are positive; zero elsewhere.
     #[inline(always)]
     fn positive<const N: usize>(
         simd: S,
         group: &Group<S>,
-        ramp: &AffineFunction,
+        function: &AffineFunction,
         within: &[AffineFunction; N],
     ) -> f64x8<S> {
         let zero = f64x8::splat(simd, 0.0);
-        let mut value = positive(simd, LaneAffine::splat(simd, ramp).values(simd, group));
-        for ramp in within {
-            let is_within = LaneAffine::splat(simd, ramp).at(group.place).simd_gt(zero);
+        let mut value = positive(simd, LaneAffine::splat(simd, function).values(simd, group));
+        for function in within {
+            let is_within = LaneAffine::splat(simd, function).at(group.place).simd_gt(zero);
             value = is_within.select(value, zero);
         }
         value

@@ -9,12 +9,12 @@ use crate::lanes::levels;
 /// The same sums, one particle after the other.
 fn plain(
     particles: &Particles,
-    ramp: &AffineFunction,
+    function: &AffineFunction,
     within: Option<&AffineFunction>,
 ) -> (AffineSums, f64) {
     let (mut sums, mut largest) = (AffineSums::default(), 0.0f64);
     for (index, place) in particles.iter().enumerate() {
-        let value = ramp.at(place);
+        let value = function.at(place);
         if value > 0.0 && within.is_none_or(|within| within.at(place) > 0.0) {
             let share = value * particles.weight(index);
             sums.sum += share;
@@ -67,29 +67,29 @@ fn weights(kind: u8, count: usize) -> Option<Vec<f64>> {
 
 fn check(
     places: &[DVec3],
-    ramp: &AffineFunction,
+    function: &AffineFunction,
     within: Option<&AffineFunction>,
 ) -> Result<(), TestCaseError> {
-    check_all(&Particles::new(places.iter().copied()), ramp, within)
+    check_all(&Particles::new(places.iter().copied()), function, within)
 }
 
 fn check_all(
     particles: &Particles,
-    ramp: &AffineFunction,
+    function: &AffineFunction,
     within: Option<&AffineFunction>,
 ) -> Result<(), TestCaseError> {
     let places: Vec<DVec3> = particles.iter().collect();
     let weight: f64 = (0..places.len()).map(|i| particles.weight(i)).sum();
-    let (expected, largest) = plain(particles, ramp, within);
+    let (expected, largest) = plain(particles, function, within);
     // bounds from rounding of the sums and of their arguments
     let reach = places.iter().fold(0.0f64, |m, p| m.max(p.length()));
-    let size = ramp.offset.abs() + ramp.slope.length() * reach;
+    let size = function.offset.abs() + function.slope.length() * reach;
     let play = 1e-12 * expected.sum + 1e-15 * size * weight;
-    let best = particles.sums(levels()[0], ramp, within);
+    let best = particles.sums(levels()[0], function, within);
     prop_assert!((best.sum - expected.sum).abs() <= play, "{best:?} {expected:?}");
     prop_assert!((best.moment - expected.moment).length() <= play * reach, "{best:?} {expected:?}");
     prop_assert!((best.squares - expected.squares).abs() <= play * size, "{best:?} {expected:?}");
-    let found = particles.largest(levels()[0], ramp);
+    let found = particles.largest(levels()[0], function);
     if let (Some(exact), None) = (best.largest, within) {
         prop_assert!((exact - largest).abs() <= 1e-14 * size, "{exact} {largest}");
     }
@@ -97,17 +97,17 @@ fn check_all(
     prop_assert!(found >= largest * (1.0 - 1.1e-4) - 1e-14 * size, "{found} {largest}");
     // the list has all particles with clearly positive values, and none with others
     let mut slots = Vec::new();
-    particles.collect_positive_slots(levels()[0], ramp, &mut slots);
+    particles.collect_positive_slots(levels()[0], function, &mut slots);
     prop_assert!(slots.is_sorted_by(|a, b| a < b));
-    prop_assert!(slots.iter().all(|&slot| ramp.at(particles.at(slot)) > 0.0));
-    let clear = places.iter().filter(|p| ramp.at(**p) > 1e-7 * size).count();
+    prop_assert!(slots.iter().all(|&slot| function.at(particles.at(slot)) > 0.0));
+    let clear = places.iter().filter(|p| function.at(**p) > 1e-7 * size).count();
     prop_assert!(slots.len() >= clear, "{} {clear}", slots.len());
     // the same bits at every SIMD level
     for level in levels() {
-        prop_assert_eq!(particles.sums(level, ramp, within), best, "{:?}", level);
-        prop_assert_eq!(particles.largest(level, ramp), found, "{:?}", level);
+        prop_assert_eq!(particles.sums(level, function, within), best, "{:?}", level);
+        prop_assert_eq!(particles.largest(level, function), found, "{:?}", level);
         let mut again = Vec::new();
-        particles.collect_positive_slots(level, ramp, &mut again);
+        particles.collect_positive_slots(level, function, &mut again);
         prop_assert_eq!(&again, &slots, "{:?}", level);
     }
     Ok(())
@@ -129,18 +129,18 @@ proptest! {
         weigh in 0u8..4,
     ) {
         let places = places(kind, count, &seeds);
-        let mut ramp = AffineFunction { offset, slope };
+        let mut function = AffineFunction { offset, slope };
         let mut other = other.map(|(slope, offset)| AffineFunction { offset, slope });
         if on_a_particle {
-            ramp.offset = slope.dot(places[count / 2]);
+            function.offset = slope.dot(places[count / 2]);
             other = other.map(|r| AffineFunction { offset: r.slope.dot(places[count / 3]), ..r });
         }
-        let ramp = AffineFunction { offset: ramp.offset * size, slope: ramp.slope * size };
+        let function = AffineFunction { offset: function.offset * size, slope: function.slope * size };
         let mut particles = Particles::new(places.iter().copied());
         if let Some(weights) = weights(weigh, count) {
             particles = particles.with_weights(&weights);
         }
-        check_all(&particles, &ramp, other.as_ref())?;
+        check_all(&particles, &function, other.as_ref())?;
     }
 
     #[test]
@@ -171,12 +171,15 @@ fn weights_do_not_change_slots_or_bounds() {
     assert_eq!(plain.nodes(), weighted.nodes());
     assert!((0..10_000).all(|i| plain.slot_of_index(i) == weighted.slot_of_index(i)));
     assert_eq!((plain.weight(1), weighted.weight(0)), (1.0, 0.0));
-    let ramp = AffineFunction { offset: -0.2, slope: DVec3::new(0.36, -0.48, 0.8) };
-    assert_eq!(plain.largest(levels()[0], &ramp), weighted.largest(levels()[0], &ramp));
+    let function = AffineFunction { offset: -0.2, slope: DVec3::new(0.36, -0.48, 0.8) };
+    assert_eq!(plain.largest(levels()[0], &function), weighted.largest(levels()[0], &function));
     // particles of zero weight contribute nothing
     let nothing = plain.with_weights(&[0.0; 10_000]);
-    assert_eq!(nothing.sums(levels()[0], &ramp, None).sum, 0.0);
-    assert_eq!(nothing.sums(levels()[0], &AffineFunction { offset: 9.0, ..ramp }, None).sum, 0.0);
+    assert_eq!(nothing.sums(levels()[0], &function, None).sum, 0.0);
+    assert_eq!(
+        nothing.sums(levels()[0], &AffineFunction { offset: 9.0, ..function }, None).sum,
+        0.0
+    );
 }
 
 #[test]
@@ -196,18 +199,18 @@ fn particles_on_the_zero_plane_of_the_other_ramp_do_not_count() {
         .map(|i| DVec3::new(f64::from(i % 32) * 0.25, 0.0, f64::from(i / 32) * 0.25))
         .collect();
     let particles = Particles::new(layer);
-    let ramp = AffineFunction { offset: 1.0, slope: DVec3::ZERO };
+    let function = AffineFunction { offset: 1.0, slope: DVec3::ZERO };
     let on = AffineFunction { offset: 0.0, slope: DVec3::Y };
-    assert_eq!(particles.sums(levels()[0], &ramp, Some(&on)).sum, 0.0);
+    assert_eq!(particles.sums(levels()[0], &function, Some(&on)).sum, 0.0);
 }
 
 #[test]
 fn the_sums_over_no_particles_are_zero() {
     let none = Particles::default();
-    let ramp = AffineFunction { offset: 1.0, slope: DVec3::X };
+    let function = AffineFunction { offset: 1.0, slope: DVec3::X };
     assert_eq!(
-        none.sums(levels()[0], &ramp, None),
+        none.sums(levels()[0], &function, None),
         AffineSums { largest: Some(0.0), ..AffineSums::default() }
     );
-    assert_eq!(none.largest(levels()[0], &ramp), 0.0);
+    assert_eq!(none.largest(levels()[0], &function), 0.0);
 }
