@@ -19,7 +19,7 @@ const BOTTOM = 18;
 export class EnergyPlot {
   constructor(parent, player) {
     this.player = player;
-    this.canvas = element('canvas', { role: 'img' });
+    this.canvas = element('canvas', { role: 'img', 'aria-label': 'Energy over time' });
     this.cursor = element('div', { className: 'cursor' });
     this.hover = element('div', { className: 'cursor hover', hidden: true });
     this.tip = element('div', { className: 'tip', hidden: true });
