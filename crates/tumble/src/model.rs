@@ -7,7 +7,9 @@ use glam::{DMat3, DVec3};
 use crate::flight::DragModes;
 use crate::shape::Shape;
 use crate::wall::WallPlane;
-use crate::{BodyState, ContactLaw, Motion, PairMaterial, SignedDistance, Surface};
+use crate::{
+    BodyState, ContactLaw, ContactPoints, Motion, PairMaterial, Particles, SignedDistance, Surface,
+};
 
 /// The time integrator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,6 +87,8 @@ pub struct BodyModel {
     pub surface: Surface,
     /// The signed distance to its mesh, if that is its surface.
     pub signed_distance: Option<Arc<SignedDistance>>,
+    /// The points at which it touches other bodies, if its surface is its mesh; else its particles touch.
+    pub contact_points: Option<Arc<ContactPoints>>,
     /// How the body moves.
     pub motion: Motion,
 }
@@ -109,6 +113,12 @@ impl BodyModel {
         let arm = rotation * self.shape.particles().get(index);
         let omega = self.angular_velocity(rotation, state.angular_momentum);
         (state.position + arm, state.velocity + omega.cross(arm))
+    }
+
+    /// The points at which the body touches the meshes of other bodies, in the body frame.
+    pub(crate) fn points(&self) -> &Particles {
+        let particles = self.shape.particles();
+        self.contact_points.as_ref().map_or(particles, |points| points.points(&self.shape))
     }
 
     /// Whether the body moves by forces.

@@ -179,7 +179,7 @@ fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)>
     let PairSpring { first, second, kind, particle, other, .. } = *spring;
     let body = |index: u32| model.bodies.get(index as usize);
     let slot = |index: u32, particle: u32| {
-        let particles = body(index)?.shape.particles();
+        let particles = body(index)?.points();
         ((particle as usize) < particles.len()).then(|| particles.slot_of_index(particle))
     };
     let a = body(first)?;

@@ -50,7 +50,8 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
             let rotational = count * radius * radius * body.inverse_moments.max_element();
             (1.0 + rotational / per_mass, (CLOSE_PACKING / count).max(1.0))
         }
-        _ => (1.0, 1.0),
+        // points in addition to the particles
+        _ => (1.0, body.contact_points.as_ref().map_or(1.0, |points| points.load())),
     };
     let springs = |law: &ContactLaw| {
         let tangential = if law.friction > 0.0 { law.friction_spring } else { 0.0 };

@@ -10,6 +10,7 @@ use super::description::WorldBuilder;
 use super::initial_state::body_state;
 use super::model_cache::ModelCache;
 use super::weighted_shapes::WeightedShapes;
+use crate::contact_points::SharedContactPoints;
 use crate::surface::Solids;
 use crate::{
     BodyModel, BodyState, BuildError, ContactLaw, DragModes, Material, MaterialOverride, Model,
@@ -22,6 +23,7 @@ pub(super) struct Shared<'a> {
     solids: Solids,
     weighted_shapes: WeightedShapes,
     models: ModelCache<'a>,
+    contact_points: SharedContactPoints,
 }
 
 impl WorldBuilder {
@@ -102,6 +104,8 @@ impl WorldBuilder {
             })?,
             None => Arc::clone(&body.shape),
         };
+        let contact_points =
+            (body.surface == Surface::Mesh).then(|| shared.contact_points.get(&shape));
         let area = shape.mean_area().unwrap_or_default();
         let law = |material: Material| material.at_area(area).law(particle_mass);
         let contacts: Vec<_> = walls.into_iter().map(law).collect();
@@ -125,6 +129,7 @@ impl WorldBuilder {
             contacts,
             surface: body.surface,
             signed_distance,
+            contact_points,
             motion: body.motion,
         })
     }

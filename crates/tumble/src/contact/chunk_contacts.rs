@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::contact_lanes::{ContactLanes, LaneInput};
 use super::neighbour_list::ChunkNeighbours;
 use super::pair::Pair;
-use super::pair_forces::{PairForces, PairLosses, PairWrench};
+use super::pair_forces::{PairForces, PairLosses};
 use super::pose::BodyPose;
 use super::tunnelling::TunnellingRisk;
 use crate::PairSpring;
@@ -72,7 +72,7 @@ impl ChunkContacts {
         poses: &[BodyPose],
     ) {
         for pair in &mut self.pairs {
-            pair.wrench = PairWrench::default();
+            pair.clear();
         }
         self.losses.clear();
         self.losses.resize(self.pairs.len(), PairLosses::default());

@@ -84,8 +84,7 @@ fn compare(model: &Model, a: &PairSpring, b: &PairSpring) -> Ordering {
 
 /// Slots of the particles of a spring.
 fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
-    let slot =
-        |body: u32, index| model.bodies[body as usize].shape.particles().slot_of_index(index);
+    let slot = |body: u32, index| model.bodies[body as usize].points().slot_of_index(index);
     match spring.kind {
         ContactKind::SphereSphere => {
             (slot(spring.first, spring.particle), slot(spring.second, spring.other))
@@ -104,7 +103,7 @@ fn friction_spring(model: &Model, spring: &PairSpring) -> f64 {
         return first.contacts[spring.second as usize].friction_spring;
     }
     let second = &model.bodies[spring.second as usize];
-    let weight = |body: &BodyModel| body.shape.particles().weight(spring.particle as usize);
+    let weight = |body: &BodyModel| body.points().weight(spring.particle as usize);
     let weight = match spring.kind {
         ContactKind::PointMesh => weight(first),
         ContactKind::MeshPoint => weight(second),

@@ -254,16 +254,18 @@ impl ChunkNeighbours {
         };
         let [mut slots, other_slots] = std::mem::take(&mut self.slots);
         slots.clear();
+        let half_segment =
+            a.body.contact_points.as_ref().map_or(0.0, |points| points.longest_half_segment());
         let mut hint = 0;
         let may_touch = |centre, radius| {
             let centre = pose.translation + pose.rotation * centre;
             !signed_distance.is_ball_outside_cached(
                 centre,
-                radius + contact_distance + margin,
+                radius + half_segment + contact_distance + margin,
                 &mut hint,
             )
         };
-        a.body.shape.particles().collect_slots_where(may_touch, &mut slots);
+        a.body.points().collect_slots_where(may_touch, &mut slots);
         let mut old = old.iter().peekable();
         for &particle in &slots {
             while old.next_if(|point| point.particle < particle).is_some() {}

@@ -18,6 +18,11 @@ pub(super) struct PairWrench {
 }
 
 impl PairWrench {
+    /// A couple on the first body and the opposite one on the second (N·m).
+    pub fn from_couple(couple: DVec3) -> Self {
+        Self { force: DVec3::ZERO, torque: couple, other_torque: couple }
+    }
+
     /// Wrench on the first body.
     pub fn on_first(&self) -> Wrench {
         Wrench { force: self.force, torque: self.torque }
@@ -38,6 +43,22 @@ pub(super) struct PairForces {
     pub first: u32,
     /// Springs and dashpots, normal and tangential.
     pub wrench: PairWrench,
+    /// Torque of the springs on the first body in addition to that of their forces, included in `wrench` (N·m).
+    pub couple: DVec3,
+}
+
+impl PairForces {
+    /// Adds a couple on the first body (N·m).
+    pub fn add_couple(&mut self, couple: DVec3) {
+        self.couple += couple;
+        self.wrench.torque += couple;
+        self.wrench.other_torque += couple;
+    }
+
+    /// Forgets all forces but the couple.
+    pub fn clear(&mut self) {
+        self.wrench = PairWrench::from_couple(self.couple);
+    }
 }
 
 /// Losses of the contacts of a pair.

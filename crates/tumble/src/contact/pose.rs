@@ -103,10 +103,10 @@ impl BodyPose {
         Self { path, skin, list_valid_until, ..Self::new(model, index, state) }
     }
 
-    /// Position of a particle (m, world axes).
+    /// Position of a contact point (m, world axes).
     #[inline(always)]
     pub fn particle_position(&self, body: &BodyModel, slot: u32) -> DVec3 {
-        self.position + self.rotation * body.shape.particles().at(slot)
+        self.position + self.rotation * body.points().at(slot)
     }
 }
 

@@ -33,7 +33,7 @@ impl TunnellingRisk {
             ContactKind::MeshPoint => (pair.second, pair.first),
             _ => (pair.first, pair.second),
         };
-        let particle = model.bodies[body as usize].shape.particles().index_of_slot(point.particle);
+        let particle = model.bodies[body as usize].points().index_of_slot(point.particle);
         let limit = pair.tunnelling_limit;
         Self { pair: index as u32, body, particle, other, displacement, limit }
     }

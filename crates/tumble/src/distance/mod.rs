@@ -6,6 +6,7 @@
 
 mod bound_grid;
 mod error;
+mod facing;
 mod normals;
 mod oriented_surface;
 mod patch;
@@ -16,6 +17,8 @@ mod tree;
 mod triangle;
 
 pub use error::SurfaceError;
+pub(crate) use facing::Exit;
+pub(crate) use oriented_surface::OrientedSurface;
 pub(crate) use patch::Patch;
 pub use signed_distance::{Nearest, SignedDistance};
 

@@ -20,17 +20,17 @@ const SIZES: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
 
 /// A triangle of the surface.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Face {
+pub(crate) struct Face {
     /// The welded vertices; the longest edge runs from the first to the second.
     pub corners: [u32; 3],
     /// The index of the triangle in the mesh.
     pub index: u32,
-    pub frame: Frame,
+    pub(super) frame: Frame,
 }
 
 /// An edge of one face. Half-edges sort by edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct HalfEdge {
+pub(crate) struct HalfEdge {
     /// The vertices at its ends, the lower first.
     pub ends: [u32; 2],
     /// The index of the face in [`OrientedSurface::faces`].
@@ -41,14 +41,14 @@ pub(super) struct HalfEdge {
 
 /// The surface of a solid, wound outwards.
 #[derive(Debug)]
-pub(super) struct OrientedSurface {
+pub(crate) struct OrientedSurface {
     pub faces: Vec<Face>,
     /// All half-edges, sorted by edge.
     half_edges: Vec<HalfEdge>,
     /// The number of vertices of the mesh.
     pub vertices: usize,
     /// The bounding box.
-    pub bounds: Extent,
+    pub(super) bounds: Extent,
     /// Whether the mesh was wound inwards and has been reversed.
     pub is_turned: bool,
     /// The number of holes.
@@ -86,6 +86,11 @@ impl OrientedSurface {
         Ok(Self { faces, half_edges, vertices: mesh.vertices.len(), bounds, is_turned, holes })
     }
 
+    /// The lowest and the highest coordinates (m).
+    pub fn box_corners(&self) -> (DVec3, DVec3) {
+        (self.bounds.low, self.bounds.high)
+    }
+
     /// The half-edges of each edge.
     pub fn edges(&self) -> impl Iterator<Item = &[HalfEdge]> {
         edges(&self.half_edges)
@@ -98,6 +103,16 @@ impl OrientedSurface {
 }
 
 impl Face {
+    /// The unit normal, outwards.
+    pub fn normal(&self) -> DVec3 {
+        self.frame.normal
+    }
+
+    /// The area (m²).
+    pub fn area(&self) -> f64 {
+        self.frame.area()
+    }
+
     fn new(index: u32, mut corners: [u32; 3], places: impl Fn([u32; 3]) -> [DVec3; 3]) -> Self {
         let first = Frame::first_corner(places(corners));
         corners.rotate_left(first);

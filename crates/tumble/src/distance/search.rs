@@ -33,7 +33,7 @@ pub(super) struct Neighbourhood {
 }
 
 /// A kind of query.
-trait Query {
+pub(super) trait Query {
     /// The squared distance (m²) beyond which nothing has to be visited.
     fn limit(&self) -> f64;
     /// Visits a group, given the squared distances of its triangles.
@@ -44,10 +44,10 @@ trait Query {
 }
 
 /// Finds the closest triangle.
-struct NearestQuery {
+pub(super) struct NearestQuery {
     slot: usize,
     index: u32,
-    squared: f64,
+    pub squared: f64,
     limit: f64,
 }
 
@@ -70,13 +70,13 @@ struct NeighbourhoodQuery {
 
 impl NearestQuery {
     #[inline(always)]
-    fn new(most: f64) -> Self {
+    pub fn new(most: f64) -> Self {
         // finite, so that missing boxes, which are at infinity, are farther
         let most = most.min(0.5 * f64::MAX);
         Self { slot: usize::MAX, index: u32::MAX, squared: most, limit: most * CLOSE }
     }
 
-    fn found(&self) -> Option<Closest> {
+    pub fn found(&self) -> Option<Closest> {
         (self.slot != usize::MAX).then_some(Closest { slot: self.slot, squared: self.squared })
     }
 }
@@ -182,6 +182,11 @@ impl Tree {
         let mut query = NearestQuery::new(most);
         dispatch!(level, simd => self.search(simd, point, hint, &mut query));
         query.found()
+    }
+
+    /// Runs a query. Group `hint` is visited first.
+    pub fn run(&self, level: Level, point: DVec3, hint: u32, query: &mut impl Query) {
+        dispatch!(level, simd => self.search(simd, point, hint, query));
     }
 
     /// As [`Self::nearest`], with the groups up to `width` (m) farther away. Group `hint` is visited first.

@@ -1,6 +1,7 @@
 //! Collects points in lanes of eight; full lanes become contacts with forces.
 
 use fearless_simd::Simd;
+use glam::DVec3;
 
 use super::pair_poses::{PairPoses, PointGeometry};
 use crate::PairSpring;
@@ -44,6 +45,7 @@ impl<'a> LaneFiller<'a> {
             list_index: index as u32,
             first: pair.first,
             wrench,
+            couple: DVec3::ZERO,
         });
         if !PREDICT {
             self.contacts.losses.push(PairLosses::default());
@@ -62,7 +64,7 @@ impl<'a> LaneFiller<'a> {
         point: &ListedContact,
     ) -> bool {
         let lane = self.count;
-        let ChunkContacts { lanes, lanes_used, input, .. } = &mut *self.contacts;
+        let ChunkContacts { lanes, lanes_used, input, pairs, .. } = &mut *self.contacts;
         if lanes.len() == *lanes_used {
             lanes.push(ContactLanes::default());
         }
@@ -77,6 +79,12 @@ impl<'a> LaneFiller<'a> {
             (lanes.has_friction, lanes.has_surface_velocity) = (false, false);
         }
         poses.write_law(pair, point, lane, lanes);
+        if geometry.couple != DVec3::ZERO {
+            let couple = geometry.couple * lanes.stiffness[lane];
+            pairs[candidate.pair as usize].add_couple(couple);
+        }
+        lanes.stiffness[lane] *= geometry.weight;
+        lanes.damping[lane] *= geometry.weight;
         poses.write_input(geometry, lane, input);
         self.count = lane + 1;
         self.count == LANES

@@ -7,8 +7,10 @@
 mod lane_filler;
 mod pair_poses;
 mod point_mesh;
+mod segment;
 mod sphere_sphere;
 mod sphere_wall;
+mod surface_point;
 
 use fearless_simd::Simd;
 

@@ -18,6 +18,10 @@ pub(super) struct PointGeometry {
     pub separation_or_normal: DVec3,
     /// Distance at which the spheres touch (m); for a wall or mesh, the depth (m).
     pub contact_distance_or_depth: f64,
+    /// Factor on the stiffness of the normal spring and dashpot.
+    pub weight: f64,
+    /// Torque on the first body in addition to that of the force, over the stiffness (m²).
+    pub couple: DVec3,
 }
 
 /// The poses of the two bodies of a pair.
@@ -115,6 +119,6 @@ impl<'a> PairPoses<'a> {
     }
 
     fn particles(&self, body: u32) -> &Particles {
-        self.model.bodies[body as usize].shape.particles()
+        self.model.bodies[body as usize].points()
     }
 }

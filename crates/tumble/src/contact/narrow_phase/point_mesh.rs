@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::lane_filler::LaneFiller;
 use super::pair_poses::{PairPoses, PointGeometry};
+use super::surface_point::{PointContact, SurfacePoint};
 use crate::contact::chunk_contacts::Candidate;
 use crate::contact::mesh_cache::{BLOCK, MeshCache, RelativePose};
 use crate::contact::pair::{ListedContact, Pair};
@@ -101,41 +102,57 @@ struct MeshQuery<'a> {
 }
 
 impl MeshQuery<'_> {
-    /// The geometry of a particle that touches the mesh; otherwise a lower bound on its gap (m).
+    /// The geometry of a point that touches the mesh; otherwise a lower bound on its gap (m).
     #[inline(always)]
     fn geometry(&mut self, point: &mut ListedContact) -> Result<PointGeometry, f64> {
-        let (position, outward, depth) = self.contact(point)?;
-        // n is from the second body to the first
+        let (position, contact) = self.contact(point)?;
+        // from the mesh to world axes, and from the second body to the first
         let is_first = self.pair.kind == ContactKind::PointMesh;
-        let normal = if is_first { outward } else { -outward };
+        let on_first = |vector: DVec3| {
+            let vector = self.mesh.1.rotation * vector;
+            if is_first { vector } else { -vector }
+        };
         Ok(PointGeometry {
             position,
-            separation_or_normal: normal,
-            contact_distance_or_depth: depth,
+            separation_or_normal: on_first(contact.outward),
+            contact_distance_or_depth: contact.depth,
+            weight: contact.weight,
+            couple: on_first(contact.couple),
         })
     }
 
-    /// Position of the particle, outward normal of the mesh and depth (m) of a contact; otherwise a lower bound on the gap (m).
-    fn contact(&mut self, point: &mut ListedContact) -> Result<(DVec3, DVec3, f64), f64> {
+    /// Position of the point, and its contact in the frame of the mesh; otherwise a lower bound on the gap (m).
+    fn contact(&mut self, point: &mut ListedContact) -> Result<(DVec3, PointContact), f64> {
         let (pair, (body, pose), (mesh_body, mesh_pose)) = (self.pair, self.particles, self.mesh);
         let Some(signed_distance) = &mesh_body.signed_distance else { return Err(self.margin) };
         let position = pose.particle_position(body, point.particle);
         let local = mesh_pose.rotation.transpose() * (position - mesh_pose.position);
+        let surface = body
+            .contact_points
+            .as_deref()
+            .map(|points| SurfacePoint::new(points, body.points().index_of_slot(point.particle)));
+        let half_length = surface.as_ref().map_or(0.0, SurfacePoint::half_length);
+        let contact_distance = pair.contact_distance + half_length;
         if !self.needs_distance
-            && let Some(gap) = self.cheap_gap(signed_distance, point, local)
+            && let Some(gap) = self.cheap_gap(signed_distance, point, local, contact_distance)
         {
             return Err(gap);
         }
         let patch = self.mesh_cache.patch_mut(point);
-        let nearest =
-            signed_distance.query_cached(local, patch, pair.contact_distance + self.margin);
+        let nearest = signed_distance.query_cached(local, patch, contact_distance + self.margin);
         let Some(nearest) = nearest else { return Err(self.margin) };
-        let depth = pair.contact_distance - nearest.distance;
+        let depth = contact_distance - nearest.distance;
         if depth <= 0.0 {
             return Err(-depth);
         }
-        let outward = mesh_pose.rotation * nearest.gradient;
-        Ok((position, outward, depth))
+        let Some(surface) = surface else {
+            return Ok((position, PointContact::plain(nearest.gradient, depth)));
+        };
+        let to_mesh = mesh_pose.rotation.transpose() * pose.rotation;
+        // 0: the next step has to look again
+        let (offset, contact) =
+            surface.contact(signed_distance, to_mesh, local, &nearest).ok_or(0.0)?;
+        Ok((position + mesh_pose.rotation * offset, contact))
     }
 
     /// A lower bound on the gap (m) without a search, if it proves that the particle does not touch.
@@ -145,8 +162,8 @@ impl MeshQuery<'_> {
         signed_distance: &SignedDistance,
         point: &ListedContact,
         local: DVec3,
+        contact_distance: f64,
     ) -> Option<f64> {
-        let contact_distance = self.pair.contact_distance;
         if let Some(patch) = self.mesh_cache.patch(point) {
             let gap = patch.lower_bound(local) - contact_distance;
             if gap > 0.0 {

@@ -16,6 +16,8 @@ pub(super) fn geometry(poses: &PairPoses, pair: &Pair, point: &ListedContact) ->
         position,
         separation_or_normal: separation,
         contact_distance_or_depth: pair.contact_distance,
+        weight: 1.0,
+        couple: DVec3::ZERO,
     }
 }
 

@@ -1,5 +1,7 @@
 //! Spheres of a body and a wall.
 
+use glam::DVec3;
+
 use super::pair_poses::{PairPoses, PointGeometry};
 use crate::contact::pair::{ListedContact, Pair};
 
@@ -13,5 +15,7 @@ pub(super) fn geometry(poses: &PairPoses, pair: &Pair, point: &ListedContact) ->
         position,
         separation_or_normal: wall.normal,
         contact_distance_or_depth: pair.contact_distance + wall.depth(position),
+        weight: 1.0,
+        couple: DVec3::ZERO,
     }
 }
