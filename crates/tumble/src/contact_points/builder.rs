@@ -12,8 +12,6 @@ use crate::{Particles, Shape};
 /// How deep an edge may enter another between two particles before it needs a contact point, in units of the size of the
 /// surface.
 const EDGE_TOLERANCE: f64 = 0.01;
-/// The longest segment of an edge, in units of the size of the surface.
-const LONGEST_SEGMENT: f64 = 0.5;
 /// The longest edge of a face without points of its own, in units of the size of the surface.
 const LONGEST_FACE_EDGE: f64 = 0.15;
 /// The largest number of parts into which the edges of a face are divided to place its points.
@@ -119,7 +117,7 @@ fn add_vertices(
     }
 }
 
-/// Adds the segments of the sharp convex edges.
+/// Adds the sharp convex edges.
 fn add_edges(surface: &OrientedSurface, vertices: &[DVec3], size: f64, points: &mut Vec<Point>) {
     for edge in surface.edges() {
         let [one, other] = edge else { continue };
@@ -134,16 +132,13 @@ fn add_edges(surface: &OrientedSurface, vertices: &[DVec3], size: f64, points: &
         if !is_convex || depth < EDGE_TOLERANCE * size {
             continue;
         }
-        let parts = (a.distance(b) / (LONGEST_SEGMENT * size)).ceil().max(1.0);
-        for part in 0..parts as usize {
-            points.push(Point {
-                place: a.lerp(b, (part as f64 + 0.5) / parts),
-                half_segment: (b - a) / (2.0 * parts),
-                normals: normals.to_vec(),
-                weight: 1.0,
-                fade: 0.0,
-            });
-        }
+        points.push(Point {
+            place: a.midpoint(b),
+            half_segment: 0.5 * (b - a),
+            normals: normals.to_vec(),
+            weight: 1.0,
+            fade: 0.0,
+        });
     }
 }
 
@@ -237,13 +232,13 @@ mod tests {
         let size = DVec3::new(0.4, 0.2, 0.4);
         let (shape, points) = points(Primitive::Box { size, divisions: 1 });
         let segments = points.half_segments.iter().filter(|half| half.length() > 0.0);
-        assert_eq!(segments.count(), 12 + 8);
+        assert_eq!(segments.count(), 12);
         let all = points.points(&shape);
         // the faces together weigh as much as the eight particles
         let weight = |index: usize| all.weight(index);
-        let faces: f64 = (8 + 20..all.len()).map(weight).sum();
+        let faces: f64 = (8 + 12..all.len()).map(weight).sum();
         assert!((faces - 8.0).abs() < 1e-12, "{faces}");
-        assert!((0..28).all(|index| weight(index) == 1.0));
+        assert!((0..20).all(|index| weight(index) == 1.0));
         assert_eq!(points.normals(0).len(), 3);
     }
 

@@ -2,8 +2,8 @@
 //!
 //! They are its particles, and more where its mesh is coarse:
 //!
-//! - on each sharp convex edge, segments; the deepest point of each is a contact point
-//!   (after M. Macklin et al., Proc. ACM Comput. Graph. Interact. Tech. 3 (2020) 5);
+//! - each sharp convex edge, which touches at its deepest point (after M. Macklin et al., Proc. ACM Comput. Graph. Interact.
+//!   Tech. 3 (2020) 5);
 //! - on each large face, fixed points inside it, which carry faces whose edges are flush.
 //!
 //! Each knows the normals of its own surface. A point inside another body can leave only through a face that opposes one of
@@ -21,6 +21,9 @@ use crate::{Particles, Shape};
 
 #[cfg(test)]
 pub(crate) use self::builder::contact_points;
+
+/// The largest number of normals kept per point.
+pub(crate) const MOST_NORMALS: usize = 6;
 
 /// The contact points of a shape with a mesh surface.
 ///

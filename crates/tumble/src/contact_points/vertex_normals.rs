@@ -2,14 +2,13 @@
 
 use glam::DVec3;
 
+use super::MOST_NORMALS;
 use crate::distance::OrientedSurface;
 
 /// Cosine of the angle to their mean up to which the faces around a vertex count as flat.
 const FLAT: f64 = 0.9;
 /// Cosine of the angle between normals up to which they count as one.
 const SAME: f64 = 0.95;
-/// The largest number of normals kept per vertex.
-const MOST: usize = 6;
 
 /// What is around a vertex.
 #[derive(Clone, Debug, Default)]
@@ -50,14 +49,14 @@ pub(super) fn vertex_normals(surface: &OrientedSurface, vertices: &[DVec3]) -> V
 fn distinct(all: &[(DVec3, f64)]) -> Vec<DVec3> {
     let mean: DVec3 = all.iter().map(|(normal, angle)| *normal * *angle).sum();
     let Some(mean) = mean.try_normalize() else {
-        return all.iter().map(|(normal, _)| *normal).take(MOST).collect();
+        return all.iter().map(|(normal, _)| *normal).take(MOST_NORMALS).collect();
     };
     if all.iter().all(|(normal, _)| normal.dot(mean) > FLAT) {
         return vec![mean];
     }
     let mut kept: Vec<DVec3> = Vec::new();
     for (normal, _) in all {
-        if kept.len() < MOST && kept.iter().all(|other| other.dot(*normal) < SAME) {
+        if kept.len() < MOST_NORMALS && kept.iter().all(|other| other.dot(*normal) < SAME) {
             kept.push(*normal);
         }
     }

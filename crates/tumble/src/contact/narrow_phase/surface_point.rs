@@ -13,6 +13,7 @@
 use glam::{DMat3, DVec3};
 
 use super::segment::{Minimum, Sample, minimum};
+use crate::contact_points::MOST_NORMALS;
 use crate::distance::Exit;
 use crate::{ContactPoints, Nearest, SignedDistance};
 
@@ -75,7 +76,7 @@ impl<'a> SurfacePoint<'a> {
         place: DVec3,
         nearest: &Nearest,
     ) -> Option<(DVec3, PointContact)> {
-        let view = View { point: self, mesh, to_mesh };
+        let view = View::new(self, mesh, to_mesh);
         if self.half_segment == DVec3::ZERO {
             return Some((DVec3::ZERO, view.energy(place, nearest).contact()?));
         }
@@ -119,12 +120,23 @@ struct Way {
 
 /// A contact point and a mesh, in the frame of the mesh.
 struct View<'a> {
-    point: &'a SurfacePoint<'a>,
     mesh: &'a SignedDistance,
-    to_mesh: DMat3,
+    /// Normals of the faces around the point.
+    normals: [DVec3; MOST_NORMALS],
+    count: usize,
+    /// See [`SurfacePoint`].
+    fade: f64,
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    fn new(point: &SurfacePoint, mesh: &'a SignedDistance, to_mesh: DMat3) -> Self {
+        let mut normals = [DVec3::ZERO; MOST_NORMALS];
+        for (turned, normal) in normals.iter_mut().zip(point.normals) {
+            *turned = to_mesh * *normal;
+        }
+        Self { mesh, normals, count: point.normals.len().min(MOST_NORMALS), fade: point.fade }
+    }
+
     /// A convex function along an edge, if the mesh is convex: less than zero inside, minus the root of the energy. Outside it
     /// is the distance times √3, the steepest slope of that root, where it begins at a rim.
     fn sample(&self, middle: DVec3, offset: DVec3, at_middle: &Nearest) -> Option<Sample> {
@@ -154,13 +166,14 @@ impl View<'_> {
     /// The argument of the smooth step, and the normal of the point's own surface that is most opposed, in the frame of the
     /// mesh.
     fn most_opposed(&self, normal: DVec3) -> (f64, DVec3) {
-        let in_body = self.to_mesh.transpose() * normal;
-        let cosine = |own: &DVec3| -own.dot(in_body);
-        let normals = self.point.normals.iter().map(|own| (cosine(own), *own));
-        let (most, own) = normals.fold((f64::NEG_INFINITY, DVec3::ZERO), |most, other| {
-            if other.0 > most.0 { other } else { most }
-        });
-        ((most - OPPOSING[0]) / (OPPOSING[1] - OPPOSING[0]), self.to_mesh * own)
+        let mut most = (f64::NEG_INFINITY, DVec3::ZERO);
+        for own in &self.normals[..self.count] {
+            let cosine = -own.dot(normal);
+            if cosine > most.0 {
+                most = (cosine, *own);
+            }
+        }
+        ((most.0 - OPPOSING[0]) / (OPPOSING[1] - OPPOSING[0]), most.1)
     }
 
     /// The derivative of the opposition with respect to a rotation of the point's body.
@@ -171,9 +184,9 @@ impl View<'_> {
 
     /// Energy and force at a place inside the mesh; `nearest` is the result of a query there.
     fn energy(&self, place: DVec3, nearest: &Nearest) -> Energy {
-        let (depth, fade) = (-nearest.distance, self.point.fade);
+        let (depth, fade) = (-nearest.distance, self.fade);
         let plain = Way { distance: depth, gradient: nearest.gradient, turn: DVec3::ZERO };
-        if self.point.normals.is_empty() {
+        if self.count == 0 {
             return far_from_rim(&plain);
         }
         let is_opposing = self.opposition(nearest.gradient) == 1.0;
