@@ -186,7 +186,7 @@ fn spheres(checks: &mut Vec<Check>) -> Result<(), Error> {
 ///
 /// Its contact force is ∫ max(0, κ (δ − h) + c δ') 2 π R dh over 0 < h < δ, in closed form.
 fn smooth_rebound(material: Material) -> f64 {
-    let law = material.at_area(4.0 * PI * RADIUS * RADIUS).law(MASS);
+    let law = material.at_area(4.0 * PI * RADIUS * RADIUS).law().of_single_particle(MASS);
     let damping_time = law.damping / law.stiffness;
     let force = |depth: f64, rate: f64| {
         // the integrand is positive below this height

@@ -42,6 +42,11 @@ impl<'a> Kinematics<'a> {
         }
     }
 
+    /// The same pose with the velocity half of the time `h` (s) earlier, in flight under gravity.
+    pub fn in_mid_flight(&self, gravity: DVec3, h: f64) -> Self {
+        Self { velocity: self.velocity - gravity * (0.5 * h), ..*self }
+    }
+
     /// Power that a wrench takes from the body, −(F·v + τ·ω) (W).
     pub fn dissipated_power(&self, wrench: &Wrench) -> f64 {
         -(wrench.force.dot(self.velocity) + wrench.torque.dot(self.angular_velocity))
