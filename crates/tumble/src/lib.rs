@@ -38,6 +38,7 @@
 mod batch;
 mod builder;
 mod contact;
+mod contact_time;
 mod depths;
 mod distance;
 mod energy;
@@ -66,6 +67,7 @@ mod wrench;
 
 pub use batch::{Batch, for_each_batch};
 pub use builder::{Body, WorldBuilder};
+pub use contact_time::{ContactTime, contact_time};
 pub use depths::PenetrationDepths;
 pub use distance::{Nearest, SignedDistance, SurfaceError};
 pub use energy::Energy;

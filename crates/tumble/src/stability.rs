@@ -1,6 +1,6 @@
 //! The largest stable time step.
 
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 use crate::shape::diagonalise;
 use crate::{BodyModel, ContactLaw, Model, Surface, WallPlane};
@@ -30,8 +30,9 @@ const CLOSE_PACKING: f64 = 4.0;
 /// Friction acts on the rotation of spheres: for N spheres of radius r its springs and dashpots contribute
 /// N r²/I in addition to N/M, with I the smallest moment. Contact between bodies is estimated for two identical
 /// bodies with all particles in contact, and for spheres with at least the neighbours of a close packing. The
-/// contributions of walls that meet in a corner add up; of two opposite walls the stiffer counts. Dashpots from a restitution depend on
-/// the particles in contact; the largest damping rate that any set of them can have counts.
+/// contributions of walls that meet in a corner add up; of two opposite walls the stiffer counts. Dashpots from a restitution are
+/// those of a patch of all N particles, c = 2 ζ √(k M/N) each. A patch of n particles has c = 2 ζ √(k M/n), but only n of them: it
+/// damps at a rate that is lower by √(n/N).
 pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
     let free = model.bodies.iter().zip(&model.names).filter(|(body, _)| body.is_free());
     let steps = free.map(|(body, name)| (critical_dt_of(model, body), name));
@@ -57,11 +58,12 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
         let tangential = if law.friction > 0.0 { law.friction_spring } else { 0.0 };
         [law.stiffness, lever * tangential]
     };
-    let reach = Reach::new(body, per_mass, lever);
-    // `share`: 1 at a wall, ½ for the reduced mass of two identical bodies
-    let dashpots = |law: &ContactLaw, share: f64| {
-        let [normal, tangential] = reach.dashpots(law, share);
-        [normal, if law.friction > 0.0 { lever * tangential } else { 0.0 }]
+    // each sphere may carry the whole mass, particles share it
+    let mass = if body.has_spheres() { body.mass } else { body.particle_mass() };
+    let dashpots = |law: &ContactLaw, mass: f64| {
+        let law = law.of_single_particle(mass);
+        let tangential = if law.friction > 0.0 { law.friction_damping } else { 0.0 };
+        [law.damping, lever * tangential]
     };
     let at_walls = |terms: &dyn Fn(&ContactLaw) -> [f64; 2]| {
         per_mass * stiffest(&model.walls, &body.contacts, terms)
@@ -71,63 +73,10 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
     let meets = if model.has_body_contact { 2.0 * per_mass * neighbours } else { 0.0 };
     let between = |[normal, tangential]: [f64; 2]| meets * normal.max(tangential);
     let square = at_walls(&springs).max(between(springs(&law)));
-    let half_rate = 0.5 * at_walls(&|law| dashpots(law, 1.0)).max(between(dashpots(&law, 0.5)));
+    let half_rate =
+        0.5 * at_walls(&|law| dashpots(law, mass)).max(between(dashpots(&law, 0.5 * mass)));
     // (2/ω)(√(1 + ζ²) − ζ), without cancellation and valid for ω = 0
     2.0 / ((square + half_rate * half_rate).sqrt() + half_rate)
-}
-
-/// How much more easily the particles of a body move than its centre of mass.
-struct Reach {
-    /// k/ω² of all particles (kg), for translation and rotation together, and for friction.
-    masses: [f64; 2],
-    /// M g, with g the largest acceleration of a particle by a unit force on it (1/kg), normal and tangential.
-    mobility: [f64; 2],
-}
-
-impl Reach {
-    fn new(body: &BodyModel, per_mass: f64, lever: f64) -> Self {
-        let turning = if body.shape.is_single_particle() { 0.0 } else { largest_turning(body) };
-        let normal = 1.0 + body.mass * turning;
-        let tangential = match body.surface {
-            Surface::Spheres { .. } => {
-                1.0 + body.mass * body.extent * body.extent * body.inverse_moments.max_element()
-            }
-            _ => normal,
-        };
-        Self { masses: [1.0 / per_mass, 1.0 / (per_mass * lever)], mobility: [normal, tangential] }
-    }
-
-    /// Dashpots of a particle (N·s/m), normal and tangential, that damp all motions at least as much as those of any patch do.
-    ///
-    /// A patch of stiffness K and effective mass m ≤ M has c = k τ, τ ≤ 2 ζ √(M/K). The squared frequency of its fastest motion is at
-    /// most K g, and at most k/m₁, with m₁ the mass in `masses`. The damping rate τ ω² is therefore largest where both are equal:
-    /// 2 ζ √(M g k/m₁), which is the rate that c = 2 ζ √(M g k m₁) on every particle has.
-    fn dashpots(&self, law: &ContactLaw, share: f64) -> [f64; 2] {
-        let [normal, tangential] = [0, 1].map(|i| share * self.mobility[i] * self.masses[i]);
-        [
-            law.damping + 2.0 * law.damping_ratio * (law.stiffness * normal).sqrt(),
-            law.friction_damping
-                + law.friction_damping_factor * (law.friction_spring * tangential).sqrt(),
-        ]
-    }
-}
-
-/// The largest part of g that is due to rotation (1/kg): n·(r × ·)ᵀ I⁻¹ (r × n) over all particles r and directions n.
-fn largest_turning(body: &BodyModel) -> f64 {
-    let inverse = body.inverse_inertia;
-    let of_particle = |r: DVec3| {
-        let cross = DMat3::from_cols(
-            DVec3::new(0.0, r.z, -r.y),
-            DVec3::new(-r.z, 0.0, r.x),
-            DVec3::new(r.y, -r.x, 0.0),
-        );
-        let matrix = cross.transpose() * inverse * cross;
-        let trace = |m: DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
-        // one eigenvalue is zero, along r; the larger of the others follows from the traces of the matrix and of its square
-        let (sum, squares) = (trace(matrix), trace(matrix * matrix));
-        0.5 * (sum + (2.0 * squares - sum * sum).max(0.0).sqrt())
-    };
-    body.shape.particles().iter().map(of_particle).fold(0.0, f64::max)
 }
 
 /// The largest eigenvalue of Σ (a n nᵀ + b (1 − n nᵀ)) over walls that can be in contact at once; `terms`
@@ -162,7 +111,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::{Body, Damping, Material, Shape, World, WorldBuilder};
+    use crate::{Body, DVec3, Damping, Material, Shape, World, WorldBuilder};
 
     /// A solid sphere of radius 1 m and mass 1 kg.
     fn ball(at: DVec3) -> Body {

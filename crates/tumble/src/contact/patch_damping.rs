@@ -6,6 +6,9 @@
 //! C = 2 ζ √((n + 1)/(2 n)) √(K m), for which the rebound does not depend on stiffness, mass, speed or mesh. The points share it as
 //! they share K, so that each has c = k C/K. A single particle has c = 2 ζ √(k m).
 //!
+//! That C is exact where the whole patch stops to push at one instant. Points at different depths do so one after the other, since none
+//! of them pulls; the patch then loses less, and C is larger by a factor of its own.
+//!
 //! A dashpot acts from the instant of touch, which is within a step. [`touch_factor`] corrects the first kick after it.
 
 use fearless_simd::{Simd, f64x8, prelude::*};
@@ -52,12 +55,24 @@ impl Patch {
         };
         // at least 1, except for rounding and the tolerance of the largest depth
         let n = (self.stiffness * self.max_depth / self.force).max(1.0);
-        let shape = ((n + 1.0) / (2.0 * n)).sqrt();
+        let shape = ((n + 1.0) / (2.0 * n)).sqrt() * release_factor(law.damping_ratio, n);
         DampingTimes {
             normal: 2.0 * law.damping_ratio * shape * root(self.stiffness),
             tangential: law.friction_damping_factor * root(self.friction_spring),
         }
     }
+}
+
+/// The factor of C for points that stop to push one after the other.
+///
+/// A fit to the rebound of smooth bodies with the force ∫ max(0, δ − h + τ δ') dA over their points at the height h, with dA/dh
+/// constant (ball, n = 2) and proportional to 1/√h (cylinder, n = 3/2): for 0.05 ≤ e ≤ 0.95 it is within 0.01 of the factor that makes the
+/// rebound exact.
+fn release_factor(damping_ratio: f64, n: f64) -> f64 {
+    // ζ^(3/4)
+    let root = damping_ratio.sqrt();
+    let x = root * root.sqrt();
+    1.0 + 0.78 * (1.0 - 1.0 / n) * (x / (1.0 + x))
 }
 
 /// W·M⁻¹ W: the power that a wrench on a body gains as it accelerates the body (N²/kg); 0 for a prescribed motion.
@@ -188,3 +203,7 @@ impl ContactLanes {
         }
     }
 }
+
+#[cfg(test)]
+#[path = "patch_damping_tests.rs"]
+mod tests;
