@@ -111,7 +111,7 @@ fn first_evaluation<'a>(
     }
     let kinematics = Kinematics::new(body, state);
     // over the time between two kicks a body at rest has no velocity, so that the prediction leaves it at rest
-    let mid_flight = kinematics.in_mid_flight(model.gravity, h);
+    let mid_flight = kinematics.in_mid_flight(model, state, h);
     let normal_springs = NormalSprings::new(model, &mid_flight, h);
     friction_contacts.detect(model, &mid_flight, springs, h);
     evaluate(model, &mid_flight, &normal_springs, forces, friction_contacts);
