@@ -48,6 +48,8 @@ pub(super) struct ContactLanes {
     pub friction: [f64; LANES],
     pub friction_spring: [f64; LANES],
     pub friction_damping: [f64; LANES],
+    /// 1 where the dashpots of a contact act from its own touch on, 0 where from that of its patch.
+    pub touches_alone: [f64; LANES],
     /// Whether the dashpots of any of the contacts depend on its patch.
     pub has_patch: bool,
     /// Whether any of the contacts has friction.
@@ -112,6 +114,7 @@ impl Default for ContactLanes {
             friction: zero,
             friction_spring: zero,
             friction_damping: zero,
+            touches_alone: zero,
             has_patch: false,
             has_friction: false,
             has_surface_velocity: false,

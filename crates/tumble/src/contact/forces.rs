@@ -34,7 +34,9 @@ impl ContactLanes {
         let zero = f64x8::splat(simd, 0.0);
         let depth = f64x8::simd_from(simd, self.depth);
         if PREDICT {
-            let factor = touch_factors(simd, depth, u.dot(n) * f64x8::splat(simd, -h));
+            let approach = u.dot(n) * f64x8::splat(simd, -h);
+            let alone = f64x8::simd_from(simd, self.touches_alone);
+            let factor = touch_factors(simd, depth, approach * alone);
             self.damping = (f64x8::simd_from(simd, self.damping) * factor).into();
             self.friction_damping = (f64x8::simd_from(simd, self.friction_damping) * factor).into();
         }

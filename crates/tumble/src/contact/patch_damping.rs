@@ -18,6 +18,7 @@ use super::contact_lanes::ContactLanes;
 use super::context::ContactContext;
 use super::pair::Pair;
 use super::pair_forces::{LaneWrenches, PairForces, PairWrench};
+use super::pose::BodyPose;
 use crate::lanes::Vec3x8;
 use crate::{BodyModel, ContactKind, ContactLaw, Wrench};
 
@@ -111,7 +112,7 @@ pub(super) struct PairPatch {
     /// W.
     wrench: PairWrench,
     /// The result, once all contacts are known.
-    times: Option<DampingTimes>,
+    times: Option<(DampingTimes, f64)>,
 }
 
 impl PairPatch {
@@ -134,8 +135,8 @@ impl PairPatch {
             == (pair.first, pair.second, pair.kind == ContactKind::SphereWall)
     }
 
-    /// The dashpots, after all contacts have been added.
-    fn times(&mut self, context: &ContactContext) -> DampingTimes {
+    /// The dashpots, after all contacts have been added, and the touch factor of the patch.
+    fn times(&mut self, context: &ContactContext) -> (DampingTimes, f64) {
         if let Some(times) = self.times {
             return times;
         }
@@ -153,9 +154,24 @@ impl PairPatch {
         // where normals diverge, part of F cancels
         let reduced = of_first.1 + of_second.1;
         self.sums.inverse_mass = ((of_first.0 + of_second.0) / (force * force)).max(reduced);
-        let times = self.sums.damping_times(&self.law);
+        let times = (self.sums.damping_times(&self.law), self.touch_factor(context));
         self.times = Some(times);
         times
+    }
+
+    /// The touch factor of the patch, at the mean velocity of its points, weighted by their springs.
+    fn touch_factor(&self, context: &ContactContext) -> f64 {
+        let power = |pose: &BodyPose, wrench: Wrench| {
+            wrench.force.dot(pose.drift_velocity) + wrench.torque.dot(pose.drift_angular_velocity)
+        };
+        let first = power(&context.poses[self.first as usize], self.wrench.on_first());
+        let second = if self.is_wall {
+            0.0
+        } else {
+            power(&context.poses[self.second as usize], self.wrench.on_second())
+        };
+        let approach = -(first + second) / self.sums.force * context.time_since_kick;
+        touch_factor(self.sums.max_depth, approach)
     }
 }
 
@@ -185,7 +201,7 @@ impl ContactLanes {
     }
 
     /// Adds the dashpots that come from the patches, all of whose contacts are known.
-    pub fn add_patch_damping(
+    pub fn add_patch_damping<const PREDICT: bool>(
         &mut self,
         context: &ContactContext,
         pairs: &[PairForces],
@@ -196,9 +212,12 @@ impl ContactLanes {
             if self.depth[lane] > 0.0
                 && let Some(patch) = patches.get_mut(patch as usize)
             {
-                let times = patch.times(context);
-                self.damping[lane] += self.stiffness[lane] * times.normal;
-                self.friction_damping[lane] += self.friction_spring[lane] * times.tangential;
+                let (times, touch) = patch.times(context);
+                let touch = if PREDICT { touch } else { 1.0 };
+                let damping = &mut self.damping[lane];
+                *damping = touch * (*damping + self.stiffness[lane] * times.normal);
+                let damping = &mut self.friction_damping[lane];
+                *damping = touch * (*damping + self.friction_spring[lane] * times.tangential);
             }
         }
     }

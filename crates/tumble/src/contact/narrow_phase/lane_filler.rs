@@ -150,7 +150,7 @@ impl<'a> LaneFiller<'a> {
                 if open != NO_PATCH && last == open {
                     break;
                 }
-                current.add_patch_damping(self.context, forces, patches);
+                current.add_patch_damping::<PREDICT>(self.context, forces, patches);
             }
             current.add_forces::<S, PREDICT>(simd, poses, forces, losses, time_since_kick);
             if !PREDICT {

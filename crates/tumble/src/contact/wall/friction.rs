@@ -79,10 +79,15 @@ impl FrictionContacts {
             self.slots.clear();
             particles.collect_positive_slots(kinematics.level, &near.depth, &mut self.slots);
             let (slots, contacts) = (&self.slots, &mut self.contacts);
+            let start = contacts.len();
             if slots.is_empty() {
                 continue;
             }
             let patch = dispatch!(kinematics.level, simd => springs.load(simd, index as u32, &near, slots, contacts));
+            if law.depends_on_patch() && patch.depth > 0.0 {
+                let factor = patch.touch_factor(kinematics, near.normal, h);
+                contacts[start..].iter_mut().for_each(|lanes| lanes.touch = [factor; LANES]);
+            }
             self.laws.push(near.law_in_patch(law, &patch, kinematics));
         }
         springs.release_all();

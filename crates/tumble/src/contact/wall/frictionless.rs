@@ -1,7 +1,6 @@
 //! Normal springs and dashpots at walls without friction, as sums over the particle tree.
 
 use super::near_wall::{NearWall, WallPatch};
-use crate::contact::patch_damping::touch_factor;
 use crate::kinematics::Kinematics;
 use crate::shape::AffineSums;
 use crate::{ContactLaw, Model, Wrench};
@@ -80,8 +79,7 @@ fn damped_law(
 ) -> ContactLaw {
     let law = wall.law_in_patch(law, patch, kinematics);
     // the sums over the tree have one factor for all particles: that at the centre of force
-    let u = kinematics.velocity + kinematics.angular_velocity.cross(patch.arm());
-    let factor = touch_factor(patch.max_depth, -h * u.dot(wall.normal));
+    let factor = patch.touch_factor(kinematics, wall.normal, h);
     ContactLaw { damping: law.damping * factor, ..law }
 }
 

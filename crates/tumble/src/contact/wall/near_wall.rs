@@ -1,6 +1,6 @@
 //! A wall in the frame of a body: no particle is rotated to find its depth.
 
-use crate::contact::patch_damping::{Patch, mobility};
+use crate::contact::patch_damping::{Patch, mobility, touch_factor};
 use crate::kinematics::Kinematics;
 use crate::shape::{AffineFunction, AffineSums};
 use crate::{ContactLaw, WallPlane, Wrench};
@@ -23,6 +23,12 @@ impl WallPatch {
     /// From the centre of mass to the centre of the spring forces (m).
     pub fn arm(&self) -> DVec3 {
         self.moment / self.depth
+    }
+
+    /// The touch factor of the patch, at the velocity of its centre of force, over the time `h` (s) since the latest kick.
+    pub fn touch_factor(&self, kinematics: &Kinematics, normal: DVec3, h: f64) -> f64 {
+        let u = kinematics.velocity + kinematics.angular_velocity.cross(self.arm());
+        touch_factor(self.max_depth, -h * u.dot(normal))
     }
 }
 
