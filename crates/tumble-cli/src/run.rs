@@ -5,10 +5,10 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 use indicatif::ProgressBar;
-use tumble_io::run::{FinishedRun, Progress, RunError, RunFolder};
+use tumble_io::run::{ContactSteps, FinishedRun, Progress, RunError, RunFolder};
 use tumble_io::scene::{LoadOptions, Loaded};
 
-use crate::console::progress_bar;
+use crate::console::{print_error, progress_bar};
 use crate::failure::{Failure, print};
 use crate::interrupt::stop_flag;
 use crate::report::report;
@@ -44,6 +44,10 @@ pub fn run(args: &RunArgs) -> Result<(), Failure> {
         None => RunFolder::create_next(Path::new("out"), &name),
     }
     .map_err(|error| Failure::from(&error))?;
+    let contacts = ContactSteps::new(&loaded.world);
+    if let Some(warning) = contacts.and_then(|contacts| contacts.warning(loaded.scene.dt)) {
+        print_error(&format!("warning: {warning}"));
+    }
     execute(&folder, |watch| tumble_io::run::run(loaded, &folder, watch))
 }
 

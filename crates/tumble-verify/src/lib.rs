@@ -13,6 +13,7 @@ mod invariance;
 mod kinematic;
 mod ledger;
 mod remeshing;
+mod restitution;
 mod setup;
 
 pub use check::{Case, Check, Outcome};
@@ -29,6 +30,8 @@ pub const CASES: &[Case] = &[
     contact::BOUNCE,
     contact::RESTITUTION,
     contact::CAT,
+    restitution::BODIES,
+    restitution::LOSSES,
     friction::SLIDING,
     friction::SLOPE,
     friction::ROLLING,

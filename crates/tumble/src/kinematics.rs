@@ -3,7 +3,7 @@
 use fearless_simd::Level;
 use glam::{DMat3, DVec3};
 
-use crate::{BodyModel, BodyState, Wrench};
+use crate::{BodyModel, BodyState, Model, Wrench};
 
 /// A body at one pose, with the velocities that its contact forces see.
 pub(crate) struct Kinematics<'a> {
@@ -38,6 +38,20 @@ impl<'a> Kinematics<'a> {
         Self {
             velocity: self.velocity + wrench.force * (0.5 * h / self.body.mass),
             angular_velocity: self.angular_velocity + angular_acceleration * (0.5 * h),
+            ..*self
+        }
+    }
+
+    /// The same pose with the velocities half of the time `h` (s) earlier in flight; v' = g − γ v and, without drag,
+    /// ω' = −I⁻¹ (ω × L).
+    pub fn in_mid_flight(&self, model: &Model, state: &BodyState, h: f64) -> Self {
+        let (body, half) = (self.body, 0.5 * h);
+        let rate = model.velocity_damping_stiffness / body.particle_mass();
+        let gyroscopic = self.angular_velocity.cross(state.angular_momentum);
+        Self {
+            velocity: self.velocity - (model.gravity - self.velocity * rate) * half,
+            angular_velocity: self.angular_velocity
+                + body.angular_velocity(self.rotation, gyroscopic) * half,
             ..*self
         }
     }

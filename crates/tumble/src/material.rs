@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 pub enum Damping {
     /// `collision_damping`: a dashpot c_n (N·s/m).
     Dashpot(f64),
-    /// `restitution`: the dashpot for which a single particle rebounds at e times its speed, 0 < e ≤ 1.
+    /// `restitution`: the dashpots for which a body rebounds at e times its speed, 0 < e ≤ 1.
     Restitution(f64),
 }
 
@@ -26,7 +26,7 @@ pub struct Material {
     pub friction_stiffness: f64,
     /// Stiffness k_t of the tangential spring (N/m); `None` is 2/7 of k.
     pub friction_spring: Option<f64>,
-    /// Tangential dashpot c_t (N·s/m); `None` is √(m k_t), half the critical damping of one particle.
+    /// Tangential dashpot c_t of a particle (N·s/m); `None` is half the critical damping of the springs in contact.
     pub friction_damping: Option<f64>,
 }
 
@@ -118,21 +118,23 @@ impl Material {
         }
     }
 
-    /// The contact law for particles of `mass` m (kg).
+    /// The contact law.
     ///
     /// Apply [`Material::at_area`] first if the material has a stiffness per area.
-    pub fn law(&self, mass: f64) -> ContactLaw {
+    pub fn law(&self) -> ContactLaw {
         let k = self.collision_stiffness;
-        let friction_spring = self.friction_spring.unwrap_or(2.0 / 7.0 * k);
+        let (damping, damping_ratio) = match self.damping {
+            Damping::Dashpot(c) => (c, 0.0),
+            Damping::Restitution(e) => (0.0, damping_ratio(e)),
+        };
         ContactLaw {
             stiffness: k,
-            damping: match self.damping {
-                Damping::Dashpot(c) => c,
-                Damping::Restitution(e) => 2.0 * damping_ratio(e) * (k * mass).sqrt(),
-            },
+            damping,
+            damping_ratio,
             friction: self.friction_stiffness,
-            friction_spring,
-            friction_damping: self.friction_damping.unwrap_or((mass * friction_spring).sqrt()),
+            friction_spring: self.friction_spring.unwrap_or(2.0 / 7.0 * k),
+            friction_damping: self.friction_damping.unwrap_or(0.0),
+            friction_damping_factor: if self.friction_damping.is_none() { 1.0 } else { 0.0 },
         }
     }
 }
@@ -145,25 +147,55 @@ impl Material {
 pub struct ContactLaw {
     /// Normal spring k (N/m).
     pub stiffness: f64,
-    /// Normal dashpot c_n (N·s/m).
+    /// Normal dashpot c_n (N·s/m), as given.
     pub damping: f64,
+    /// Damping ratio ζ of all contacts between two bodies, or of a body and a wall, at one instant. It adds to `damping` the
+    /// dashpots that give a restitution.
+    pub damping_ratio: f64,
     /// Coulomb coefficient μ.
     pub friction: f64,
     /// Tangential spring k_t (N/m).
     pub friction_spring: f64,
-    /// Tangential dashpot c_t (N·s/m).
+    /// Tangential dashpot c_t (N·s/m), as given.
     pub friction_damping: f64,
+    /// The part of √(m Σ k_t) that all contacts together add to their tangential dashpots: 1 where none is given.
+    pub friction_damping_factor: f64,
 }
 
 impl ContactLaw {
     /// Whether only the normal spring acts.
     pub fn is_elastic(&self) -> bool {
-        self.damping == 0.0 && self.friction == 0.0
+        self.damping == 0.0 && self.damping_ratio == 0.0 && self.friction == 0.0
     }
 
     /// Whether any force depends on velocity.
     pub fn is_damped(&self) -> bool {
-        self.damping > 0.0 || (self.friction > 0.0 && self.friction_damping > 0.0)
+        let tangential = self.friction_damping > 0.0 || self.friction_damping_factor > 0.0;
+        self.damping > 0.0 || self.damping_ratio > 0.0 || (self.friction > 0.0 && tangential)
+    }
+
+    /// Whether the dashpots of a contact depend on the other contacts between the same bodies.
+    pub(crate) fn depends_on_patch(&self) -> bool {
+        self.damping_ratio > 0.0 || (self.friction > 0.0 && self.friction_damping_factor > 0.0)
+    }
+
+    /// The law of a particle that is alone in contact, with the effective `mass` m (kg).
+    pub fn of_single_particle(&self, mass: f64) -> Self {
+        self.with_dashpots(
+            2.0 * self.damping_ratio * (self.stiffness * mass).sqrt(),
+            self.friction_damping_factor * (self.friction_spring * mass).sqrt(),
+        )
+    }
+
+    /// The law whose dashpots have these additions (N·s/m), and depend on nothing else.
+    pub(crate) fn with_dashpots(&self, normal: f64, tangential: f64) -> Self {
+        Self {
+            damping: self.damping + normal,
+            damping_ratio: 0.0,
+            friction_damping: self.friction_damping + tangential,
+            friction_damping_factor: 0.0,
+            ..*self
+        }
     }
 }
 

@@ -13,13 +13,10 @@ pub struct PairMaterial {
     pub friction: f64,
     /// Tangential spring k_t (N/m).
     pub friction_spring: f64,
-    /// Tangential dashpot c_t (N·s/m); `None` is √(m k_t).
+    /// Tangential dashpot c_t (N·s/m); `None` is that of [`ContactLaw::friction_damping_factor`].
     pub friction_damping: Option<f64>,
     /// 1/M (1/kg); 0 for a body with prescribed motion.
     pub inverse_mass: f64,
-    /// The number of particles among which the mass is divided for the contact law: all of them, or 1 for a body
-    /// of spheres.
-    pub share: f64,
 }
 
 /// The normal damping of contacts with other bodies.
@@ -27,13 +24,13 @@ pub struct PairMaterial {
 pub enum PairDamping {
     /// The dashpot c_n (N·s/m).
     Dashpot(f64),
-    /// The damping ratio ζ = c_n / (2 √(k m)).
+    /// The damping ratio ζ, see [`ContactLaw::damping_ratio`].
     Ratio(f64),
 }
 
 impl PairMaterial {
     /// The parameters from a complete material.
-    pub fn new(material: &Material, inverse_mass: f64, share: f64) -> Self {
+    pub fn new(material: &Material, inverse_mass: f64) -> Self {
         let k = material.collision_stiffness;
         Self {
             stiffness: k,
@@ -45,7 +42,6 @@ impl PairMaterial {
             friction_spring: material.friction_spring.unwrap_or(2.0 / 7.0 * k),
             friction_damping: material.friction_damping,
             inverse_mass,
-            share,
         }
     }
 
@@ -60,27 +56,27 @@ impl PairMaterial {
     /// The contact law of a particle of this body against the `other` body.
     ///
     /// Stiffnesses are harmonic means (two springs in series, each of half length), coefficients of friction
-    /// geometric means (zero if either is zero), and dashpots arithmetic means. Dashpots given by a restitution
-    /// or by the default √(m k_t) are computed with the k, k_t and m of the pair. Two bodies of the same material
-    /// therefore have the law of that material. m is the reduced mass M₁M₂/(M₁ + M₂) divided by the number of
-    /// particles of this body that share it.
+    /// geometric means (zero if either is zero), and dashpots and damping ratios arithmetic means: of two bodies of which one has
+    /// a dashpot and the other a restitution, each contributes half of its own. Two bodies of the same material
+    /// therefore have the law of that material.
     pub fn law(&self, other: &Self) -> ContactLaw {
-        let mass = 1.0 / ((self.inverse_mass + other.inverse_mass) * self.share);
-        let stiffness = harmonic_mean(self.stiffness, other.stiffness);
-        let friction_spring = harmonic_mean(self.friction_spring, other.friction_spring);
-        let normal = |damping: PairDamping| match damping {
-            PairDamping::Dashpot(c) => c,
-            PairDamping::Ratio(zeta) => 2.0 * zeta * (stiffness * mass).sqrt(),
-        };
-        let tangential =
-            |damping: Option<f64>| damping.unwrap_or_else(|| (mass * friction_spring).sqrt());
+        let mean = |of: fn(&Self) -> f64| 0.5 * (of(self) + of(other));
         ContactLaw {
-            stiffness,
-            damping: 0.5 * (normal(self.damping) + normal(other.damping)),
+            stiffness: harmonic_mean(self.stiffness, other.stiffness),
+            damping: mean(|material| match material.damping {
+                PairDamping::Dashpot(c) => c,
+                PairDamping::Ratio(_) => 0.0,
+            }),
+            damping_ratio: mean(|material| match material.damping {
+                PairDamping::Dashpot(_) => 0.0,
+                PairDamping::Ratio(zeta) => zeta,
+            }),
             friction: (self.friction * other.friction).sqrt(),
-            friction_spring,
-            friction_damping: 0.5
-                * (tangential(self.friction_damping) + tangential(other.friction_damping)),
+            friction_spring: harmonic_mean(self.friction_spring, other.friction_spring),
+            friction_damping: mean(|material| material.friction_damping.unwrap_or(0.0)),
+            friction_damping_factor: mean(|material| {
+                if material.friction_damping.is_none() { 1.0 } else { 0.0 }
+            }),
         }
     }
 }
@@ -102,27 +98,25 @@ mod tests {
     #[test]
     fn two_bodies_of_one_material_have_its_contact_law() {
         let one = material(1e6, 0.3, Damping::Restitution(0.5));
-        let (a, b) = (PairMaterial::new(&one, 0.5, 1.0), PairMaterial::new(&one, 0.5, 1.0));
-        assert_eq!(a.law(&b), one.law(1.0));
+        let (a, b) = (PairMaterial::new(&one, 0.5), PairMaterial::new(&one, 0.5));
+        assert_eq!(a.law(&b), one.law());
     }
 
     #[test]
     fn the_contact_law_of_two_spheres_is_symmetric() {
-        let a = PairMaterial::new(&material(1e6, 0.3, Damping::Restitution(0.5)), 0.5, 1.0);
-        let b = PairMaterial::new(&material(3e5, 0.7, Damping::Dashpot(12.0)), 0.1, 1.0);
+        let a = PairMaterial::new(&material(1e6, 0.3, Damping::Restitution(0.5)), 0.5);
+        let b = PairMaterial::new(&material(3e5, 0.7, Damping::Dashpot(12.0)), 0.1);
         assert_eq!(a.law(&b), b.law(&a));
         let law = a.law(&b);
         assert!(law.stiffness > 3e5 && law.stiffness < 1e6);
     }
 
     #[test]
-    fn the_pair_has_no_friction_if_one_body_has_none_and_a_prescribed_body_has_infinite_mass() {
-        let smooth = PairMaterial::new(&material(1e6, 0.0, Damping::Dashpot(0.0)), 0.0, 1.0);
-        let rough = PairMaterial::new(&material(1e6, 2.0, Damping::Restitution(0.5)), 0.25, 10.0);
+    fn the_pair_has_no_friction_if_one_body_has_none_and_half_the_damping_of_each() {
+        let smooth = PairMaterial::new(&material(1e6, 0.0, Damping::Dashpot(0.0)), 0.0);
+        let rough = PairMaterial::new(&material(1e6, 2.0, Damping::Restitution(0.5)), 0.25);
         let law = rough.law(&smooth);
         assert_eq!(law.friction, 0.0);
-        // the mean of the dashpot of a particle of 0.4 kg and zero
-        let alone = material(1e6, 2.0, Damping::Restitution(0.5)).law(0.4);
-        assert!((law.damping / alone.damping - 0.5).abs() < 1e-15);
+        assert_eq!((law.damping, law.damping_ratio), (0.0, 0.5 * damping_ratio(0.5)));
     }
 }

@@ -30,7 +30,9 @@ const CLOSE_PACKING: f64 = 4.0;
 /// Friction acts on the rotation of spheres: for N spheres of radius r its springs and dashpots contribute
 /// N r²/I in addition to N/M, with I the smallest moment. Contact between bodies is estimated for two identical
 /// bodies with all particles in contact, and for spheres with at least the neighbours of a close packing. The
-/// contributions of walls that meet in a corner add up; of two opposite walls the stiffer counts.
+/// contributions of walls that meet in a corner add up; of two opposite walls the stiffer counts. Dashpots from a restitution are
+/// those of a patch of all N particles, c = 2 ζ √(k M/N) each. A patch of n particles has c = 2 ζ √(k M/n), but only n of them: it
+/// damps at a rate that is lower by √(n/N).
 pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
     let free = model.bodies.iter().zip(&model.names).filter(|(body, _)| body.is_free());
     let steps = free.map(|(body, name)| (critical_dt_of(model, body), name));
@@ -57,7 +59,10 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
         let tangential = if law.friction > 0.0 { law.friction_spring } else { 0.0 };
         [law.stiffness, lever * tangential]
     };
-    let dashpots = |law: &ContactLaw| {
+    // each sphere may carry the whole mass, particles share it
+    let mass = if body.has_spheres() { body.mass } else { body.particle_mass() };
+    let dashpots = |law: &ContactLaw, mass: f64| {
+        let law = law.of_single_particle(mass);
         let tangential = if law.friction > 0.0 { law.friction_damping } else { 0.0 };
         [law.damping, lever * tangential]
     };
@@ -69,7 +74,8 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
     let meets = if model.has_body_contact { 2.0 * per_mass * neighbours } else { 0.0 };
     let between = |[normal, tangential]: [f64; 2]| meets * normal.max(tangential);
     let square = at_walls(&springs).max(between(springs(&law)));
-    let half_rate = 0.5 * at_walls(&dashpots).max(between(dashpots(&law)));
+    let half_rate =
+        0.5 * at_walls(&|law| dashpots(law, mass)).max(between(dashpots(&law, 0.5 * mass)));
     // (2/ω)(√(1 + ζ²) − ζ), without cancellation and valid for ω = 0
     2.0 / ((square + half_rate * half_rate).sqrt() + half_rate)
 }

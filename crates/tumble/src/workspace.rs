@@ -1,6 +1,6 @@
 //! Buffers for one batch of bodies.
 
-use crate::contact::wall::FrictionContacts;
+use crate::contact::wall::{FrictionContacts, WallContacts};
 use crate::{FrictionSpring, RunTotals};
 
 /// Buffers for one batch of bodies, and what the batch reports at the end of a step.
@@ -8,6 +8,8 @@ use crate::{FrictionSpring, RunTotals};
 pub(crate) struct Workspace {
     /// Contacts of one body with walls that have friction.
     pub friction_contacts: FrictionContacts,
+    /// Contacts with walls of each body of the batch, where bodies touch each other too.
+    pub wall_contacts: Vec<WallContacts>,
     /// Friction springs of one body at the beginning of a sub-step.
     pub saved_springs: Vec<FrictionSpring>,
     /// What the batch adds to the totals of the run.

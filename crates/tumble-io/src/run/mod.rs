@@ -53,7 +53,7 @@ pub use progress::{FinishedRun, Progress};
 pub use resume::Resumption;
 pub use resume_error::ResumeError;
 pub use run_loop::run;
-pub use summary::Summary;
+pub use summary::{ContactSteps, Summary};
 pub use trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
 
 pub(crate) use csv_reader::{CsvReader, parse_energy, parse_trajectory};

@@ -3,10 +3,44 @@
 use std::time::Duration;
 
 use serde::Serialize;
-use tumble::{World, critical_dt};
+use tumble::{World, contact_time, critical_dt};
 
 use crate::plot::EnergyRow;
 use crate::scene::Scene;
+
+/// How well the time step resolves contacts with dashpots.
+#[derive(Clone, Debug, Serialize)]
+pub struct ContactSteps {
+    /// The body with the shortest contacts.
+    pub body: String,
+    /// Estimated duration of its contacts (s).
+    pub seconds: f64,
+    /// Steps per contact.
+    pub steps: f64,
+    /// The largest time step for a rebound with the given restitution, to about 0.01 (s).
+    pub dt_for_restitution: f64,
+}
+
+impl ContactSteps {
+    /// `None` if no contact has a dashpot.
+    pub fn new(world: &World) -> Option<Self> {
+        let time = contact_time(world.model())?;
+        let dt_for_restitution = time.dt_for_restitution();
+        let steps = time.seconds / world.dt();
+        Some(Self { body: time.body, seconds: time.seconds, steps, dt_for_restitution })
+    }
+
+    /// A warning, if the time step is too long.
+    pub fn warning(&self, dt: f64) -> Option<String> {
+        let Self { body, seconds, steps, dt_for_restitution: enough } = self;
+        (dt > *enough).then(|| {
+            format!(
+                "the contacts of \"{body}\" last about {seconds:.2e} s, {steps:.1} steps of dt = {dt} s: too few for its \
+                 restitution; set dt to {enough:.2e} or less"
+            )
+        })
+    }
+}
 
 /// The contents of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
@@ -44,6 +78,8 @@ pub struct Summary {
     /// Largest time step at which contacts are stable (s); absent if no contact is possible.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_dt: Option<f64>,
+    /// How well the time step resolves contacts with dashpots, if there are any.
+    pub contact_time: Option<ContactSteps>,
     /// Number of evaluations of the contact forces of a body.
     pub force_evaluations: u64,
     /// Largest penetration depth of the run (m), over all force evaluations and the last state.
@@ -83,6 +119,7 @@ impl Summary {
             energy_end: energy.total,
             energy_residual: energy.residual,
             critical_dt: critical_dt(world.model()).map(|critical| critical.dt),
+            contact_time: ContactSteps::new(world),
             force_evaluations: world.state().totals.evaluations,
             max_depth: world.state().totals.max_depth.max(depths.bodies).max(depths.walls),
             body_depth_end: depths.bodies,

@@ -89,8 +89,6 @@ impl WorldBuilder {
         }
         let (is_free, has_spheres) =
             (body.motion == Motion::Free, matches!(body.surface, Surface::Spheres { .. }));
-        // a body of spheres usually touches with one of them at a time
-        let particle_mass = if has_spheres { mass } else { mass / body.shape.moments().count };
         let (walls, own) = self.materials(body);
         let per_area = |material: &Material| material.collision_stiffness_per_area;
         let shape = match walls.iter().chain(&own).find_map(per_area) {
@@ -107,7 +105,11 @@ impl WorldBuilder {
         let contact_points =
             (body.surface == Surface::Mesh).then(|| shared.contact_points.get(&shape));
         let area = shape.mean_area().unwrap_or_default();
-        let law = |material: Material| material.at_area(area).law(particle_mass);
+        let is_point = shape.is_single_particle();
+        let law = |material: Material| {
+            let law = material.at_area(area).law();
+            if is_point { law.of_single_particle(mass) } else { law }
+        };
         let contacts: Vec<_> = walls.into_iter().map(law).collect();
         let moments = body.shape.principal().moments * mass;
         let inverse_moments = moments.to_array().map(|m| if m > 0.0 { 1.0 / m } else { 0.0 });
@@ -121,7 +123,6 @@ impl WorldBuilder {
             pair_material: PairMaterial::new(
                 &body.material.over(self.material).at_area(area),
                 if is_free { 1.0 / mass } else { 0.0 },
-                if has_spheres { 1.0 } else { body.shape.moments().count },
             ),
             extent: extent(&body.shape, body.surface),
             has_friction: contacts.iter().any(|law| law.friction > 0.0),

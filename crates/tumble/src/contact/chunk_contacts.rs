@@ -7,6 +7,7 @@ use super::contact_lanes::{ContactLanes, LaneInput};
 use super::neighbour_list::ChunkNeighbours;
 use super::pair::Pair;
 use super::pair_forces::{PairForces, PairLosses};
+use super::patch_damping::{NO_PATCH, PairPatch};
 use super::pose::BodyPose;
 use super::tunnelling::TunnellingRisk;
 use crate::PairSpring;
@@ -18,6 +19,10 @@ pub(crate) struct ChunkContacts {
     /// The points that were examined, pair by pair. Entries from `lanes_used` on are spare.
     pub(super) lanes: Vec<ContactLanes>,
     pub(super) lanes_used: usize,
+    /// How many of them have been evaluated.
+    pub(super) lanes_evaluated: usize,
+    /// Sums over the contacts of the pairs whose dashpots depend on them.
+    pub(super) patches: Vec<PairPatch>,
     /// The pairs of these points, with their forces.
     pub(super) pairs: Vec<PairForces>,
     /// Losses of the same pairs, after the latest full evaluation.
@@ -54,7 +59,8 @@ pub(super) struct Candidate {
 impl ChunkContacts {
     /// Forgets all contacts; `pair_count` pairs are in the neighbour list.
     pub(super) fn clear(&mut self, pair_count: usize) {
-        self.lanes_used = 0;
+        (self.lanes_used, self.lanes_evaluated) = (0, 0);
+        self.patches.clear();
         self.springs.clear();
         self.pairs.clear();
         self.losses.clear();
@@ -79,7 +85,7 @@ impl ChunkContacts {
         self.springs.clear();
         for index in 0..self.lanes_used {
             let Self { lanes, pairs, losses, .. } = self;
-            lanes[index].add_forces::<S, false>(simd, poses, pairs, losses);
+            lanes[index].add_forces::<S, false>(simd, poses, pairs, losses, 0.0);
             self.store_springs(index, &neighbours.pairs);
         }
     }
@@ -94,6 +100,12 @@ impl ChunkContacts {
             spring.stretch = lanes.kept_stretch(lane);
             self.springs.push(spring);
         }
+    }
+
+    /// The patch of the latest contact, which further contacts may belong to, or [`NO_PATCH`].
+    pub(super) fn last_patch(&self) -> u32 {
+        let last = self.lanes[..self.lanes_used].last();
+        last.map_or(NO_PATCH, |lanes| self.pairs[lanes.pair[lanes.count - 1] as usize].patch)
     }
 
     /// Takes buffers from `spare` where this chunk has none.

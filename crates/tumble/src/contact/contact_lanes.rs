@@ -41,12 +41,17 @@ pub(super) struct ContactLanes {
     pub arm: Columns,
     /// From the centre of mass of the second body to the same point (m).
     pub other_arm: Columns,
-    /// Parameters of the law; all but μ are multiplied by the weight of the particle.
+    /// Parameters of the law; all but μ are multiplied by the weight of the particle. The dashpots are complete after the first
+    /// evaluation.
     pub stiffness: [f64; LANES],
     pub damping: [f64; LANES],
     pub friction: [f64; LANES],
     pub friction_spring: [f64; LANES],
     pub friction_damping: [f64; LANES],
+    /// 1 where the dashpots of a contact act from its own touch on, 0 where from that of its patch.
+    pub touches_alone: [f64; LANES],
+    /// Whether the dashpots of any of the contacts depend on its patch.
+    pub has_patch: bool,
     /// Whether any of the contacts has friction.
     pub has_friction: bool,
     /// Whether any of the bodies has a surface velocity.
@@ -109,6 +114,8 @@ impl Default for ContactLanes {
             friction: zero,
             friction_spring: zero,
             friction_damping: zero,
+            touches_alone: zero,
+            has_patch: false,
             has_friction: false,
             has_surface_velocity: false,
             old_stretch: vectors,
@@ -152,16 +159,21 @@ impl ContactLanes {
         (0..self.count).filter(|&lane| self.depth[lane] > 0.0)
     }
 
-    /// Velocities of the bodies, as their poses have them.
+    /// Velocities of the bodies, as their poses have them; with `DRIFT` those in the middle of the flight since the latest kick.
     #[inline(always)]
-    pub fn velocities(&self, poses: &[BodyPose]) -> LaneVelocities {
+    pub fn velocities<const DRIFT: bool>(&self, poses: &[BodyPose]) -> LaneVelocities {
         let zero = [[[0.0; LANES]; 3]; 2];
         let mut all = LaneVelocities { velocity: zero, angular_velocity: zero };
         for lane in 0..self.count {
             for (body, index) in [self.first[lane], self.second[lane]].into_iter().enumerate() {
                 let pose = pose_or_wall(poses, index);
-                set(&mut all.velocity[body], lane, pose.velocity);
-                set(&mut all.angular_velocity[body], lane, pose.angular_velocity);
+                let (velocity, angular_velocity) = if DRIFT {
+                    (pose.drift_velocity, pose.drift_angular_velocity)
+                } else {
+                    (pose.velocity, pose.angular_velocity)
+                };
+                set(&mut all.velocity[body], lane, velocity);
+                set(&mut all.angular_velocity[body], lane, angular_velocity);
             }
         }
         all

@@ -6,6 +6,7 @@ use super::contact_lanes::{ContactLanes, LaneVelocities};
 use super::law::coulomb::dashpot_fraction;
 use super::law::{NormalForce, NormalLaw};
 use super::pair_forces::{LaneWrenches, PairForces, PairLosses};
+use super::patch_damping::touch_factors;
 use super::pose::BodyPose;
 use crate::lanes::{Columns, LANES, Vec3x8};
 
@@ -13,7 +14,11 @@ impl ContactLanes {
     /// Adds the forces of the contacts, at the velocities of the poses, to those of their pairs.
     ///
     /// Normal force: see [`law`](super::law). Tangential force: the spring −k_t ξ and the dashpot −c_t u_t, together at most μ
-    /// times the normal force. With `PREDICT` only the forces are computed; losses and springs are left as they are.
+    /// times the normal force.
+    ///
+    /// With `PREDICT` only the forces are computed; losses and springs are left as they are. The velocities are then those in the
+    /// middle of the flight since the latest kick, a time `h` (s) ago: over that time bodies at rest have no velocity, so that the
+    /// prediction leaves them at rest.
     #[inline(always)]
     pub fn add_forces<S: Simd, const PREDICT: bool>(
         &mut self,
@@ -21,12 +26,20 @@ impl ContactLanes {
         poses: &[BodyPose],
         pairs: &mut [PairForces],
         losses: &mut [PairLosses],
+        h: f64,
     ) {
         let n = Vec3x8::load(simd, &self.normal);
         let (arm, other_arm) = (Vec3x8::load(simd, &self.arm), Vec3x8::load(simd, &self.other_arm));
-        let u = self.relative_velocity(simd, poses, n);
+        let u = self.relative_velocity::<S, PREDICT>(simd, poses, n);
         let zero = f64x8::splat(simd, 0.0);
         let depth = f64x8::simd_from(simd, self.depth);
+        if PREDICT {
+            let approach = u.dot(n) * f64x8::splat(simd, -h);
+            let alone = f64x8::simd_from(simd, self.touches_alone);
+            let factor = touch_factors(simd, depth, approach * alone);
+            self.damping = (f64x8::simd_from(simd, self.damping) * factor).into();
+            self.friction_damping = (f64x8::simd_from(simd, self.friction_damping) * factor).into();
+        }
         let NormalForce { spring, total: normal } =
             self.normal_law(simd).force(simd, depth, u.dot(n));
         let mut force = n * normal;
@@ -95,8 +108,13 @@ impl ContactLanes {
 
     /// Velocity of the first body relative to the second at the points of contact (m/s).
     #[inline(always)]
-    fn relative_velocity<S: Simd>(&self, simd: S, poses: &[BodyPose], n: Vec3x8<S>) -> Vec3x8<S> {
-        let LaneVelocities { velocity, angular_velocity } = self.velocities(poses);
+    fn relative_velocity<S: Simd, const DRIFT: bool>(
+        &self,
+        simd: S,
+        poses: &[BodyPose],
+        n: Vec3x8<S>,
+    ) -> Vec3x8<S> {
+        let LaneVelocities { velocity, angular_velocity } = self.velocities::<DRIFT>(poses);
         let u = point_velocity(simd, [&velocity[0], &angular_velocity[0], &self.arm])
             - point_velocity(simd, [&velocity[1], &angular_velocity[1], &self.other_arm]);
         if self.has_surface_velocity {

@@ -27,7 +27,7 @@ pub(crate) fn update_poses(
 }
 
 /// Sets the velocities in `poses`, of the bodies from index `first` on, to those in the middle of a kick by the predicted forces
-/// over the time `h` (s). `forces` are those of contact with walls.
+/// over the time `h` (s). `forces` are those of contact with walls, predicted too.
 pub(crate) fn predict_velocities(
     model: &Model,
     first: usize,
@@ -38,10 +38,9 @@ pub(crate) fn predict_velocities(
 ) {
     let mut sums = BodySums::new(results, first);
     for ((index, pose), forces) in (first..).zip(poses).zip(forces) {
-        let sum = sums.next::<true>(index);
+        let wrench = sums.next::<true>(index).total + forces.contact();
         let body = &model.bodies[index];
-        if body.is_free() && sum.total != Wrench::default() {
-            let wrench = sum.total + forces.contact();
+        if body.is_free() && wrench != Wrench::default() {
             pose.velocity += wrench.force * (0.5 * h / body.mass);
             let angular_acceleration = body.angular_velocity(pose.rotation, wrench.torque);
             pose.angular_velocity += angular_acceleration * (0.5 * h);

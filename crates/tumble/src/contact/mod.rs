@@ -10,6 +10,7 @@
 //! | neighbour lists | `neighbour_list` | pairs of bodies | points that may touch soon |
 //! | narrow phase | `narrow_phase` | points | contacts, in lanes of eight |
 //! | geometry, friction | `geometry`, `friction` | contacts | depths, normals, stretches |
+//! | damping | `patch_damping` | all contacts of two bodies | dashpots that give a restitution |
 //! | law | `law`, `forces` | depths, velocities, stretches | forces of pairs |
 //! | gather | `gather` | forces of pairs | forces of bodies |
 //!
@@ -34,6 +35,7 @@ mod narrow_phase;
 mod neighbour_list;
 mod pair;
 mod pair_forces;
+mod patch_damping;
 pub(crate) mod pose;
 pub(crate) mod tunnelling;
 pub(crate) mod wall;

@@ -1,6 +1,5 @@
 //! Pairs of bodies that may touch, and what is constant about their contacts.
 
-use crate::pair_material::PairMaterial;
 use crate::state::{PairOrder, pair_order};
 use crate::{BodyModel, ContactKind, ContactLaw, Surface};
 
@@ -104,10 +103,27 @@ pub(super) fn contact_kinds(first: &BodyModel, second: &BodyModel) -> &'static [
 
 /// The law of one kind of contact between two bodies.
 pub(super) fn contact_law(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> ContactLaw {
-    let (a, b): (&PairMaterial, &PairMaterial) = (&first.pair_material, &second.pair_material);
-    // if both are particles, the body with more particles sharing its mass decides
-    let is_swapped = kind == ContactKind::SphereSphere && b.share > a.share;
-    if is_swapped || kind == ContactKind::MeshPoint { b.law(a) } else { a.law(b) }
+    let law = first.pair_material.law(&second.pair_material);
+    if is_single_point(first, second, kind) {
+        // the patch is this point, and its effective mass is that of the bodies
+        let mass = 1.0 / (first.pair_material.inverse_mass + second.pair_material.inverse_mass);
+        law.of_single_particle(mass)
+    } else {
+        law
+    }
+}
+
+/// Whether two bodies touch at one point at most, whose force turns neither of them, or only one that is not free.
+fn is_single_point(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> bool {
+    let is_point = |body: &BodyModel| {
+        body.shape.is_single_particle() && !matches!(body.surface, Surface::Mesh)
+    };
+    match kind {
+        ContactKind::SphereSphere => is_point(first) && is_point(second),
+        ContactKind::PointMesh => is_point(first) && !second.is_free(),
+        ContactKind::MeshPoint => is_point(second) && !first.is_free(),
+        ContactKind::SphereWall => is_point(first),
+    }
 }
 
 /// Distance at which particles of these bodies touch, or a particle and a mesh (m).

@@ -41,6 +41,9 @@ pub(super) struct PairForces {
     pub list_index: u32,
     /// The first body.
     pub first: u32,
+    /// Index of its patch in [`ChunkContacts::patches`](super::chunk_contacts::ChunkContacts::patches), or
+    /// [`NO_PATCH`](super::patch_damping::NO_PATCH).
+    pub patch: u32,
     /// Springs and dashpots, normal and tangential.
     pub wrench: PairWrench,
     /// Torque of the springs on the first body in addition to that of their forces, included in `wrench` (N·m).

@@ -213,6 +213,11 @@ impl Shape {
     pub fn radius(&self) -> f64 {
         self.radius
     }
+
+    /// Whether there is one particle, at the centre of mass.
+    pub(crate) fn is_single_particle(&self) -> bool {
+        self.particles.len() == 1 && self.radius == 0.0
+    }
 }
 
 #[cfg(test)]

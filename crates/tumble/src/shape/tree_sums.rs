@@ -17,6 +17,8 @@ const TOLERANCE: f64 = 1e-4;
 /// Sums of a function f over a set of particles, each multiplied by its weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct AffineSums {
+    /// The number of particles.
+    pub count: f64,
     /// Σ f.
     pub sum: f64,
     /// Σ f r.
@@ -83,11 +85,13 @@ impl Particles {
                                 for group in self.groups(simd, subtree) {
                                     let value =
                                         LaneAffine::positive(simd, &group, function, within);
-                                    let mut weighted = value;
+                                    let one = f64x8::splat(simd, 1.0);
                                     if WEIGHTED {
-                                        weighted *= self.weights(simd, &group);
+                                        let weights = self.weights(simd, &group);
+                                        lanes.add(simd, &group, weights, value, value * weights);
+                                    } else {
+                                        lanes.add(simd, &group, one, value, value);
                                     }
-                                    lanes.add(&group, value, weighted);
                                 }
                             }
                         },
@@ -228,6 +232,7 @@ impl AffineSums {
         let Moments { count, mean: place, .. } = *moments;
         let mean = function.at(place);
         let scattered = moments.scatter_times(function.slope);
+        self.count += count;
         self.sum += count * mean;
         self.moment += place * (count * mean) - scattered;
         self.squares += count * mean * mean + function.slope.dot(scattered);
@@ -237,6 +242,7 @@ impl AffineSums {
     #[inline(always)]
     fn plus<S: Simd>(self, lanes: &LaneSums<S>) -> Self {
         Self {
+            count: self.count + sum(lanes.count),
             sum: self.sum + sum(lanes.sum),
             moment: self.moment + lanes.moment.sum(),
             squares: self.squares + sum(lanes.squares),
@@ -247,6 +253,7 @@ impl AffineSums {
 
 /// [`AffineSums`] in eight lanes.
 struct LaneSums<S: Simd> {
+    count: f64x8<S>,
     sum: f64x8<S>,
     moment: Vec3x8<S>,
     squares: f64x8<S>,
@@ -257,12 +264,22 @@ impl<S: Simd> LaneSums<S> {
     #[inline(always)]
     fn zero(simd: S) -> Self {
         let zero = f64x8::splat(simd, 0.0);
-        Self { sum: zero, moment: Vec3x8::splat(simd, DVec3::ZERO), squares: zero, largest: zero }
+        let moment = Vec3x8::splat(simd, DVec3::ZERO);
+        Self { count: zero, sum: zero, moment, squares: zero, largest: zero }
     }
 
     /// Adds the values of a group; `weighted` is each value times the weight of its particle.
     #[inline(always)]
-    fn add(&mut self, group: &Group<S>, value: f64x8<S>, weighted: f64x8<S>) {
+    fn add(
+        &mut self,
+        simd: S,
+        group: &Group<S>,
+        weight: f64x8<S>,
+        value: f64x8<S>,
+        weighted: f64x8<S>,
+    ) {
+        let zero = f64x8::splat(simd, 0.0);
+        self.count += value.simd_gt(zero).select(weight, zero);
         self.sum += weighted;
         self.moment += group.place * weighted;
         self.squares += value * weighted;

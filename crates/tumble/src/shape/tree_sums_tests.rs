@@ -17,6 +17,7 @@ fn plain(
         let value = function.at(place);
         if value > 0.0 && within.is_none_or(|within| within.at(place) > 0.0) {
             let share = value * particles.weight(index);
+            sums.count += particles.weight(index);
             sums.sum += share;
             sums.moment += place * share;
             sums.squares += value * share;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::wall_contact::wall_contact_again;
 use crate::contact::gather;
 use crate::{Batch, BodyModel, Integrator, Model, Scratch, State, for_each_batch, parallel};
 
@@ -29,6 +30,9 @@ pub fn around_body_contact(
     });
     contact_forces(model, state, scratch);
     for_each_batch(model, state, scratch, |batch| {
+        if model.integrator == Integrator::Splitting {
+            wall_contact_again(batch);
+        }
         let Batch { first, forces, contact_results, .. } = batch;
         gather::gather_forces(*contact_results, *first, forces);
         after(batch);
@@ -38,16 +42,13 @@ pub fn around_body_contact(
 
 /// Neighbour lists, narrow phase and contact forces, for a kick over the time step.
 ///
-/// Under `splitting`, dashpots see the mean of the velocities before and after the kick: a first evaluation predicts these,
-/// a second one uses them. Under `euler`, dashpots see the velocities as they are.
+/// Under `splitting`, dashpots see the mean of the velocities before and after the kick: a first evaluation of all contacts, with
+/// walls and between bodies, predicts these, and a second one uses them. Under `euler`, dashpots see the velocities as they are.
 fn contact_forces(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let h = model.dt;
     let contacts = &mut scratch.body_contacts;
     contacts.update_neighbour_lists(model, state);
-    // spheres at walls have the damping of their wall contacts
-    let is_damped = |body: &Arc<BodyModel>| {
-        body.pair_material.is_damped() || (body.has_spheres() && body.is_damped)
-    };
+    let is_damped = |body: &Arc<BodyModel>| body.pair_material.is_damped() || body.is_damped;
     if model.integrator != Integrator::Splitting || !model.bodies.iter().any(is_damped) {
         contacts.evaluate::<false>(model, &state.pair_springs, h);
     } else if parallel::is_single_threaded() {

@@ -13,7 +13,8 @@
 //!    (`narrow_phase/pair_poses.rs`) writes into the lanes; its energy in `ContactLanes::elastic_energy`.
 //! 4. At walls: choose it in `WallEvaluation::add_lanes` (`wall/friction.rs`), and send every contact with a nonlinear law there instead of to
 //!    `wall/frictionless.rs`; its energy in `wall::elastic_energy`.
-//! 5. The critical step in `stability.rs`, and the damping that gives a restitution in `material.rs`.
+//! 5. The critical step in `stability.rs`, the duration of an impact in `contact_time.rs`, and the damping that gives a restitution in
+//!    `patch_damping.rs`.
 
 pub(in crate::contact) mod coulomb;
 pub(in crate::contact) mod linear;

@@ -11,6 +11,7 @@ use crate::contact::context::ContactContext;
 use crate::contact::friction_history::FrictionHistory;
 use crate::contact::pair::{ListedContact, Pair};
 use crate::contact::pair_forces::{PairForces, PairLosses, PairWrench};
+use crate::contact::patch_damping::{NO_PATCH, PairPatch};
 use crate::contact::tunnelling::TunnellingRisk;
 use crate::lanes::LANES;
 
@@ -40,17 +41,30 @@ impl<'a> LaneFiller<'a> {
     /// Starts a pair; returns its index in [`ChunkContacts::pairs`].
     #[inline(always)]
     pub fn begin_pair<const PREDICT: bool>(&mut self, index: usize, pair: &Pair) -> u32 {
-        let wrench = PairWrench::default();
+        let patch = self.patch(pair);
         self.contacts.pairs.push(PairForces {
             list_index: index as u32,
             first: pair.first,
-            wrench,
+            patch,
+            wrench: PairWrench::default(),
             couple: DVec3::ZERO,
         });
         if !PREDICT {
             self.contacts.losses.push(PairLosses::default());
         }
         self.contacts.pairs.len() as u32 - 1
+    }
+
+    /// The index of the patch of a pair; the pairs of one patch follow each other.
+    fn patch(&mut self, pair: &Pair) -> u32 {
+        if !pair.law.depends_on_patch() {
+            return NO_PATCH;
+        }
+        let patches = &mut self.contacts.patches;
+        if !patches.last().is_some_and(|patch| patch.includes(pair)) {
+            patches.push(PairPatch::new(pair));
+        }
+        patches.len() as u32 - 1
     }
 
     /// Adds a point of a pair; returns whether all lanes are full.
@@ -77,6 +91,7 @@ impl<'a> LaneFiller<'a> {
         lanes.point[lane] = candidate.point;
         if lane == 0 {
             (lanes.has_friction, lanes.has_surface_velocity) = (false, false);
+            lanes.has_patch = false;
         }
         poses.write_law(pair, point, lane, lanes);
         if geometry.couple != DVec3::ZERO {
@@ -90,7 +105,7 @@ impl<'a> LaneFiller<'a> {
         self.count == LANES
     }
 
-    /// Computes geometry, friction springs and forces of the lanes in use.
+    /// Computes geometry and friction springs of the lanes in use, and the forces of all lanes whose patches are complete.
     #[inline(always)]
     pub fn flush<S: Simd, const PREDICT: bool>(
         &mut self,
@@ -110,7 +125,7 @@ impl<'a> LaneFiller<'a> {
         for lane in 0..count {
             self.finish_lane(lane, pairs, points);
         }
-        let ChunkContacts { lanes, lanes_used, input, pairs: forces, losses, .. } =
+        let ChunkContacts { lanes, lanes_used, input, pairs: forces, patches, .. } =
             &mut *self.contacts;
         let current = &mut lanes[*lanes_used];
         *lanes_used += 1;
@@ -118,9 +133,38 @@ impl<'a> LaneFiller<'a> {
         if current.has_friction {
             current.advance_friction(simd, input, poses, time_since_kick);
         }
-        current.add_forces::<S, PREDICT>(simd, poses, forces, losses);
-        if !PREDICT {
-            self.contacts.store_springs(self.contacts.lanes_used - 1, pairs);
+        if current.has_patch {
+            current.add_to_patches(simd, forces, patches);
+        }
+        self.evaluate::<S, PREDICT>(simd, pairs, false);
+    }
+
+    /// Computes the forces of the lanes whose patches are complete: of all but those of the latest patch, or with `is_last` of all.
+    #[inline(always)]
+    pub fn evaluate<S: Simd, const PREDICT: bool>(
+        &mut self,
+        simd: S,
+        pairs: &[Pair],
+        is_last: bool,
+    ) {
+        let ContactContext { poses, time_since_kick, .. } = *self.context;
+        let open = if is_last { NO_PATCH } else { self.contacts.last_patch() };
+        while self.contacts.lanes_evaluated < self.contacts.lanes_used {
+            let index = self.contacts.lanes_evaluated;
+            let ChunkContacts { lanes, pairs: forces, patches, losses, .. } = &mut *self.contacts;
+            let current = &mut lanes[index];
+            if current.has_patch {
+                let last = forces[current.pair[current.count - 1] as usize].patch;
+                if open != NO_PATCH && last == open {
+                    break;
+                }
+                current.add_patch_damping::<PREDICT>(self.context, forces, patches);
+            }
+            current.add_forces::<S, PREDICT>(simd, poses, forces, losses, time_since_kick);
+            if !PREDICT {
+                self.contacts.store_springs(index, pairs);
+            }
+            self.contacts.lanes_evaluated += 1;
         }
     }
 

@@ -1,8 +1,8 @@
 //! Narrow phase: which of the listed points touch. One file per kind of pair.
 //!
 //! Points that may touch are collected in the order of the lists and put into lanes of eight ([`lane_filler`]), whatever the
-//! kinds of their pairs. Full lanes go through geometry, friction and forces at once, while their data is in the cache. Forces
-//! are added contact by contact in the order of the lists, so the lanes do not change any result.
+//! kinds of their pairs. Full lanes go through geometry and friction at once, and through forces as soon as all contacts of their
+//! patches are known ([`patch_damping`](super::patch_damping)), while their data is in the cache. Forces are added contact by contact in the order of the lists, so the lanes do not change any result.
 
 mod lane_filler;
 mod pair_poses;
@@ -60,6 +60,7 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
     }
     examine_candidates::<S, PREDICT>(simd, &mut filler, pairs, points);
     filler.flush::<S, PREDICT>(simd, pairs, points);
+    filler.evaluate::<S, PREDICT>(simd, pairs, true);
     filler.history.release_all();
     let released = filler.history.released;
     contacts.released = released;

@@ -114,6 +114,8 @@ impl<'a> PairPoses<'a> {
         lanes.friction[lane] = law.friction;
         lanes.friction_spring[lane] = weight * law.friction_spring;
         lanes.friction_damping[lane] = weight * law.friction_damping;
+        lanes.touches_alone[lane] = f64::from(u8::from(!law.depends_on_patch()));
+        lanes.has_patch |= law.depends_on_patch();
         lanes.has_friction |= law.friction > 0.0;
         lanes.has_surface_velocity |= pair.has_surface_velocity;
     }

@@ -9,10 +9,11 @@ use std::cmp::Ordering;
 use fearless_simd::{Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
-use super::near_wall::NearWall;
+use super::near_wall::{NearWall, WallPatch};
 use crate::contact::law::coulomb::dashpot_fraction;
 use crate::contact::law::linear::LinearSpringDashpot;
 use crate::contact::law::{NormalForce, NormalLaw};
+use crate::contact::patch_damping::touch_factors;
 use crate::kinematics::Kinematics;
 use crate::lanes::{Columns, LANES, Vec3x8, largest, set, sum, vector};
 use crate::{BodyForces, ContactLaw, FrictionSpring, Model, Particles, Wrench};
@@ -24,6 +25,8 @@ pub(crate) struct FrictionContacts {
     slots: Vec<u32>,
     /// The contacts, wall by wall, each wall's in the order of the slots.
     contacts: Vec<WallContactLanes>,
+    /// The law of the particles at each of these walls.
+    laws: Vec<ContactLaw>,
     /// Energy (J) of the springs whose particles have left the wall.
     released: f64,
     /// Energy (J) that the latest evaluation loses to slip.
@@ -38,6 +41,8 @@ struct WallContactLanes {
     particle: [u32; LANES],
     /// Depth δ (m).
     depth: [f64; LANES],
+    /// The part of its dashpots that acts in this kick, see [`touch_factors`].
+    touch: [f64; LANES],
     /// From the centre of mass to the particle, R r (m).
     arm: Columns,
     /// Anchor of the spring before this step (m).
@@ -51,14 +56,22 @@ struct WallContactLanes {
 }
 
 impl FrictionContacts {
-    /// Lists the contacts of a body with walls that have friction. `old` are its springs so far.
-    pub fn detect(&mut self, model: &Model, kinematics: &Kinematics, old: &[FrictionSpring]) {
+    /// Lists the contacts of a body with walls that have friction. `old` are its springs so far. The velocities, together with the
+    /// time `h` (s) since the latest kick, tell which particles have touched since then.
+    pub fn detect(
+        &mut self,
+        model: &Model,
+        kinematics: &Kinematics,
+        old: &[FrictionSpring],
+        h: f64,
+    ) {
         self.contacts.clear();
+        self.laws.clear();
         self.released = 0.0;
         if !kinematics.body.has_friction && old.is_empty() {
             return;
         }
-        let mut springs = OldSprings { kinematics, model, old, released: 0.0 };
+        let mut springs = OldSprings { kinematics, model, old, released: 0.0, h };
         let particles = kinematics.body.shape.particles();
         for (index, (wall, law)) in model.walls.iter().zip(&kinematics.body.contacts).enumerate() {
             let near = NearWall::new(wall, kinematics).filter(|_| law.friction > 0.0);
@@ -66,7 +79,16 @@ impl FrictionContacts {
             self.slots.clear();
             particles.collect_positive_slots(kinematics.level, &near.depth, &mut self.slots);
             let (slots, contacts) = (&self.slots, &mut self.contacts);
-            dispatch!(kinematics.level, simd => springs.load(simd, index as u32, &near, slots, contacts));
+            let start = contacts.len();
+            if slots.is_empty() {
+                continue;
+            }
+            let patch = dispatch!(kinematics.level, simd => springs.load(simd, index as u32, &near, slots, contacts));
+            if law.depends_on_patch() && patch.depth > 0.0 {
+                let factor = patch.touch_factor(kinematics, near.normal, h);
+                contacts[start..].iter_mut().for_each(|lanes| lanes.touch = [factor; LANES]);
+            }
+            self.laws.push(near.law_in_patch(law, &patch, kinematics));
         }
         springs.release_all();
         self.released = springs.released;
@@ -75,9 +97,9 @@ impl FrictionContacts {
     /// Adds the forces of all contacts at the velocities of `kinematics`.
     pub fn add_forces(&mut self, model: &Model, kinematics: &Kinematics, forces: &mut BodyForces) {
         self.slip_loss = 0.0;
-        for lanes in self.contacts.chunk_by_mut(|a, b| a.wall == b.wall) {
-            let wall = lanes[0].wall as usize;
-            let (normal, law) = (model.walls[wall].normal, kinematics.body.contacts[wall]);
+        let walls = self.contacts.chunk_by_mut(|a, b| a.wall == b.wall);
+        for (lanes, &law) in walls.zip(&self.laws) {
+            let normal = model.walls[lanes[0].wall as usize].normal;
             let evaluation = WallEvaluation { kinematics, normal, law };
             dispatch!(kinematics.level, simd => evaluation.add_all(simd, lanes, forces, &mut self.slip_loss));
         }
@@ -135,10 +157,12 @@ struct OldSprings<'a> {
     model: &'a Model,
     old: &'a [FrictionSpring],
     released: f64,
+    /// Time since the latest kick (s).
+    h: f64,
 }
 
 impl OldSprings<'_> {
-    /// Appends the contacts of the particles in `slots` with one wall, with the springs that they had.
+    /// Appends the contacts of the particles in `slots` with one wall, with the springs that they had; returns their sums.
     #[inline(always)]
     fn load<S: Simd>(
         &mut self,
@@ -147,10 +171,13 @@ impl OldSprings<'_> {
         near: &NearWall,
         slots: &[u32],
         contacts: &mut Vec<WallContactLanes>,
-    ) {
+    ) -> WallPatch {
         simd.vectorize(
             #[inline(always)]
             || {
+                let zero = f64x8::splat(simd, 0.0);
+                let (mut weight, mut depths, mut deepest) = (zero, zero, zero);
+                let mut moment = Vec3x8::splat(simd, DVec3::ZERO);
                 for slots in slots.chunks(LANES) {
                     let count = slots.len() as u32;
                     let mut lanes = WallContactLanes { wall, count, ..WallContactLanes::default() };
@@ -161,13 +188,26 @@ impl OldSprings<'_> {
                             set(&mut lanes.old_stretch, lane, old.stretch);
                         }
                     }
+                    let particles = self.kinematics.body.shape.particles();
+                    let weights = f64x8::simd_from(simd, lanes.weights(particles));
+                    let depth = f64x8::simd_from(simd, lanes.depth);
+                    weight += weights;
+                    depths += weights * depth;
+                    moment += Vec3x8::load(simd, &lanes.arm) * (weights * depth);
+                    deepest = deepest.simd_gt(depth).select(deepest, depth);
                     contacts.push(lanes);
                 }
+                WallPatch {
+                    count: sum(weight),
+                    depth: sum(depths),
+                    moment: moment.sum(),
+                    max_depth: largest(deepest),
+                }
             },
-        );
+        )
     }
 
-    /// Arms and depths of the particles, and an anchor at each of them.
+    /// Arms, depths and touch factors of the particles, and an anchor at each of them.
     #[inline(always)]
     fn compute_geometry<S: Simd>(
         &self,
@@ -187,6 +227,11 @@ impl OldSprings<'_> {
         lanes.depth[slots.len()..].fill(0.0);
         let arm = r.rotated(simd, kinematics.rotation);
         lanes.arm = arm.store();
+        let u = Vec3x8::splat(simd, kinematics.velocity)
+            + Vec3x8::splat(simd, kinematics.angular_velocity).cross(arm);
+        let approach = u.dot(Vec3x8::splat(simd, near.normal)) * f64x8::splat(simd, -self.h);
+        let depth = f64x8::simd_from(simd, lanes.depth);
+        lanes.touch = touch_factors(simd, depth, approach).into();
         lanes.anchor = (Vec3x8::splat(simd, kinematics.position) + arm).store();
     }
 
@@ -308,9 +353,10 @@ impl WallEvaluation<'_> {
             + Vec3x8::splat(simd, kinematics.angular_velocity).cross(arm);
 
         // normal force
+        let touch = f64x8::simd_from(simd, lanes.touch);
         let normal_law = LinearSpringDashpot {
             stiffness: f64x8::splat(simd, law.stiffness),
-            damping: f64x8::splat(simd, law.damping),
+            damping: touch * law.damping,
         };
         let NormalForce { spring, total: normal } = normal_law.force(simd, depth, u.dot(n));
         let (weighted_spring, weighted_normal) = (weights.scale(spring), weights.scale(normal));
@@ -338,7 +384,7 @@ impl WallEvaluation<'_> {
         lanes.slips = slips.to_bitmask();
 
         // tangential dashpot, within what the spring leaves of the limit
-        let dashpot = u.perpendicular_to(n) * f64x8::splat(simd, -law.friction_damping);
+        let dashpot = u.perpendicular_to(n) * (touch * -law.friction_damping);
         let dashpot =
             weights.scale_vector(dashpot * dashpot_fraction(simd, friction, dashpot, limit));
         sums.dashpot += dashpot;

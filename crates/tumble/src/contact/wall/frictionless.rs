@@ -1,62 +1,86 @@
 //! Normal springs and dashpots at walls without friction, as sums over the particle tree.
 
-use super::near_wall::NearWall;
+use super::near_wall::{NearWall, WallPatch};
 use crate::kinematics::Kinematics;
 use crate::shape::AffineSums;
 use crate::{ContactLaw, Model, Wrench};
 
 /// The springs of the walls without friction: F = k Σ δ n and τ = R (k Σ δ r × n_b).
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct NormalSprings {
     /// Sum over all these walls.
     pub all: Wrench,
-    /// Sum over those that have a dashpot.
-    damped: Wrench,
-    /// Whether particles are behind a wall with a dashpot.
-    is_damped: bool,
+    /// The walls that have a dashpot.
+    damped: Vec<DampedWall>,
     /// Depth of the deepest particle (m).
     pub max_depth: f64,
 }
 
+/// A wall with particles behind it and a dashpot.
+#[derive(Clone, Debug)]
+struct DampedWall {
+    wall: NearWall,
+    /// The law of each particle.
+    law: ContactLaw,
+    /// The springs.
+    spring: Wrench,
+}
+
 impl NormalSprings {
-    /// The springs at a pose; velocities do not matter.
-    pub fn new(model: &Model, kinematics: &Kinematics) -> Self {
+    /// The springs at a pose. The velocities, together with the time `h` (s) since the latest kick, tell whether a patch has touched
+    /// since then.
+    pub fn new(model: &Model, kinematics: &Kinematics, h: f64) -> Self {
         let mut springs = Self::default();
         for (wall, law) in near_walls(model, kinematics) {
             let depths = wall.depth_sums(kinematics);
             if depths.sum <= 0.0 {
                 continue;
             }
-            let wrench = normal_wrench(kinematics, &wall, law.stiffness, &depths);
-            springs.all += wrench;
-            if law.damping > 0.0 {
-                springs.damped += wrench;
-                springs.is_damped = true;
-            }
+            let spring = normal_wrench(kinematics, &wall, law.stiffness, &depths);
+            springs.all += spring;
             let search =
                 || kinematics.body.shape.particles().largest(kinematics.level, &wall.depth);
             let deepest = depths.largest.unwrap_or_else(search);
             springs.max_depth = springs.max_depth.max(deepest);
+            if law.is_damped() {
+                let patch = WallPatch {
+                    count: depths.count,
+                    depth: depths.sum,
+                    moment: kinematics.rotation * depths.moment,
+                    max_depth: deepest,
+                };
+                let law = damped_law(&wall, law, &patch, kinematics, h);
+                springs.damped.push(DampedWall { wall, law, spring });
+            }
         }
         springs
     }
 
     /// The dashpots at the velocities of `kinematics`: sums of max(0, k δ − c_n u·n), less the springs.
-    pub fn dashpots(&self, model: &Model, kinematics: &Kinematics) -> Wrench {
-        if !self.is_damped {
-            return Wrench::default();
+    pub fn dashpots(&self, kinematics: &Kinematics) -> Wrench {
+        let mut dashpots = Wrench::default();
+        for DampedWall { wall, law, spring } in &self.damped {
+            let force = wall.spring_and_dashpot(kinematics, law);
+            let particles = kinematics.body.shape.particles();
+            let sums = particles.sums(kinematics.level, &force, Some(&wall.depth));
+            dashpots += normal_wrench(kinematics, wall, 1.0, &sums) - *spring;
         }
-        let mut both = Wrench::default();
-        for (wall, law) in near_walls(model, kinematics) {
-            if law.damping > 0.0 {
-                let force = wall.spring_and_dashpot(kinematics, law);
-                let particles = kinematics.body.shape.particles();
-                let sums = particles.sums(kinematics.level, &force, Some(&wall.depth));
-                both += normal_wrench(kinematics, &wall, 1.0, &sums);
-            }
-        }
-        both - self.damped
+        dashpots
     }
+}
+
+/// The law of each particle of a patch, in the kick at these velocities.
+fn damped_law(
+    wall: &NearWall,
+    law: &ContactLaw,
+    patch: &WallPatch,
+    kinematics: &Kinematics,
+    h: f64,
+) -> ContactLaw {
+    let law = wall.law_in_patch(law, patch, kinematics);
+    // the sums over the tree have one factor for all particles: that at the centre of force
+    let factor = patch.touch_factor(kinematics, wall.normal, h);
+    ContactLaw { damping: law.damping * factor, ..law }
 }
 
 /// The walls without friction that are within reach.

@@ -31,6 +31,13 @@ pub(crate) struct WallContactOutput<'a> {
     pub friction_contacts: &'a mut FrictionContacts,
 }
 
+/// The contacts of one body with walls, between the two evaluations of a kick.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct WallContacts {
+    normal_springs: NormalSprings,
+    friction: FrictionContacts,
+}
+
 /// Computes the wall contact forces on one body, for a kick over the time `h` (s); `springs` are its friction springs so far.
 pub(crate) fn wall_contact_forces(
     model: &Model,
@@ -41,22 +48,74 @@ pub(crate) fn wall_contact_forces(
     h: f64,
 ) {
     let WallContactOutput { forces, next_springs, friction_contacts } = output;
-    forces.clear_contact();
     next_springs.clear();
-    let is_far = |wall: &WallPlane| wall.depth(state.position) < -body.bounding_radius();
-    if springs.is_empty() && model.walls.iter().all(is_far) {
-        return;
-    }
-    let kinematics = Kinematics::new(body, state);
-    let normal_springs = NormalSprings::new(model, &kinematics);
-    friction_contacts.detect(model, &kinematics, springs);
-    evaluate(model, &kinematics, &normal_springs, forces, friction_contacts);
+    let first = first_evaluation(model, body, state, springs, forces, friction_contacts, h);
+    let Some((kinematics, normal_springs)) = first else { return };
     if h != 0.0 && forces.max_depth > 0.0 && body.is_damped {
         // a second evaluation at the mid-kick velocities of the first makes dashpots second order
         let mid_kick = kinematics.at_mid_kick(&forces.contact(), h);
         evaluate(model, &mid_kick, &normal_springs, forces, friction_contacts);
     }
     friction_contacts.store_springs(&kinematics, next_springs);
+}
+
+impl WallContacts {
+    /// The first of two evaluations: forces that serve to predict the velocities in the middle of a kick over the time `h` (s), for
+    /// bodies that also touch each other. `springs` are the friction springs of the body so far.
+    pub fn predict(
+        &mut self,
+        model: &Model,
+        body: &BodyModel,
+        state: &BodyState,
+        springs: &[FrictionSpring],
+        (forces, next_springs): (&mut BodyForces, &mut Vec<FrictionSpring>),
+        h: f64,
+    ) {
+        next_springs.clear();
+        let first = first_evaluation(model, body, state, springs, forces, &mut self.friction, h);
+        if let Some((kinematics, normal_springs)) = first {
+            self.friction.store_springs(&kinematics, next_springs);
+            self.normal_springs = normal_springs;
+        }
+    }
+
+    /// The second evaluation, at the velocities in the middle of the kick.
+    pub fn evaluate_again(
+        &mut self,
+        model: &Model,
+        mid_kick: &Kinematics,
+        forces: &mut BodyForces,
+        next_springs: &mut Vec<FrictionSpring>,
+    ) {
+        next_springs.clear();
+        evaluate(model, mid_kick, &self.normal_springs, forces, &mut self.friction);
+        self.friction.store_springs(mid_kick, next_springs);
+    }
+}
+
+/// Finds the contacts of a body with walls, and sets its forces to those at the velocities in the middle of the flight since the latest
+/// kick; `None` where no wall is near.
+fn first_evaluation<'a>(
+    model: &Model,
+    body: &'a BodyModel,
+    state: &BodyState,
+    springs: &[FrictionSpring],
+    forces: &mut BodyForces,
+    friction_contacts: &mut FrictionContacts,
+    h: f64,
+) -> Option<(Kinematics<'a>, NormalSprings)> {
+    forces.clear_contact();
+    let is_far = |wall: &WallPlane| wall.depth(state.position) < -body.bounding_radius();
+    if springs.is_empty() && model.walls.iter().all(is_far) {
+        return None;
+    }
+    let kinematics = Kinematics::new(body, state);
+    // over the time between two kicks a body at rest has no velocity, so that the prediction leaves it at rest
+    let mid_flight = kinematics.in_mid_flight(model, state, h);
+    let normal_springs = NormalSprings::new(model, &mid_flight, h);
+    friction_contacts.detect(model, &mid_flight, springs, h);
+    evaluate(model, &mid_flight, &normal_springs, forces, friction_contacts);
+    Some((kinematics, normal_springs))
 }
 
 /// Sets the forces of all contacts at the velocities of `kinematics`.
@@ -69,7 +128,7 @@ fn evaluate(
 ) {
     forces.clear_contact();
     forces.spring = normal_springs.all;
-    forces.dashpot = normal_springs.dashpots(model, kinematics);
+    forces.dashpot = normal_springs.dashpots(kinematics);
     forces.max_depth = normal_springs.max_depth;
     friction_contacts.add_forces(model, kinematics, forces);
 }

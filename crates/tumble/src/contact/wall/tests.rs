@@ -44,8 +44,8 @@ fn wall_contact_has_the_same_bits_at_every_simd_level() {
             kinematics.level = level;
             let (mut forces, mut springs) = (BodyForces::default(), Vec::new());
             let mut contacts = FrictionContacts::default();
-            let normal_springs = NormalSprings::new(model, &kinematics);
-            contacts.detect(model, &kinematics, &state.springs[0]);
+            let normal_springs = NormalSprings::new(model, &kinematics, model.dt);
+            contacts.detect(model, &kinematics, &state.springs[0], model.dt);
             evaluate(model, &kinematics, &normal_springs, &mut forces, &mut contacts);
             contacts.store_springs(&kinematics, &mut springs);
             (forces, springs, elastic_energy(model, &kinematics, &state.springs[0]))
