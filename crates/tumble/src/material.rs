@@ -161,9 +161,9 @@ impl ContactLaw {
         self.damping == 0.0 && self.friction == 0.0
     }
 
-    /// Whether any force depends on velocity.
+    /// Whether any force depends on velocity: dashpots, and friction, which slips along the velocity.
     pub fn is_damped(&self) -> bool {
-        self.damping > 0.0 || (self.friction > 0.0 && self.friction_damping > 0.0)
+        self.damping > 0.0 || self.friction > 0.0
     }
 }
 

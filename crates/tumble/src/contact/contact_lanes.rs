@@ -55,8 +55,8 @@ pub(super) struct ContactLanes {
     pub old_stretch: Columns,
     /// Its stretch now, before the friction limit (m).
     pub stretch: Columns,
-    /// The part of the stretch that the friction limit keeps.
-    pub kept: [f64; LANES],
+    /// The stretch that the friction limit allows (m).
+    pub held: Columns,
 }
 
 /// What the geometry of eight contacts is computed from.
@@ -113,7 +113,7 @@ impl Default for ContactLanes {
             has_surface_velocity: false,
             old_stretch: vectors,
             stretch: vectors,
-            kept: zero,
+            held: vectors,
         }
     }
 }
@@ -199,6 +199,6 @@ impl ContactLanes {
 
     /// Stretch of a friction spring after the latest evaluation (m).
     pub fn kept_stretch(&self, lane: usize) -> DVec3 {
-        vector(&self.stretch, lane) * self.kept[lane]
+        vector(&self.held, lane)
     }
 }

@@ -35,8 +35,10 @@ mod neighbour_list;
 mod pair;
 mod pair_forces;
 pub(crate) mod pose;
+mod since_kick;
 pub(crate) mod tunnelling;
 pub(crate) mod wall;
 
 pub(crate) use self::body_contacts::BodyContacts;
 pub(crate) use self::pair::can_touch;
+pub(crate) use self::since_kick::SinceKick;

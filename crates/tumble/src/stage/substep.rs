@@ -1,8 +1,12 @@
-//! Adaptive sub-steps: a step in contact is halved until its energy balance closes.
+//! Adaptive sub-steps: a step in contact is halved until its energy balance closes and its motion does not change.
 //!
 //! The contact force has kinks at touch and at release, and a step across a kink is only as accurate as it is short. A body in
-//! contact therefore advances in sub-steps: one whose energy balance does not close is repeated with half the length, one that
-//! closes may be followed by a longer one. Where contacts are undamped springs and drag is weak, large sub-steps are
+//! contact therefore advances in sub-steps: one that is not accurate enough is repeated with half the length, one that is may be
+//! followed by a longer one. The energy balance tells how accurate a sub-step is where springs alone act. Dashpots and slip are accounted
+//! for whatever they take, so the balance closes even where they take too much. With them a sub-step is made twice, as
+//! one step and as two half steps, and the velocities must agree.
+//!
+//! Where contacts are undamped springs and drag is weak, large sub-steps are
 //! composed of nine symmetric steps to order six (W. Kahan & R.-C. Li, Math. Comp. 66 (1997) 1089, s9odr6a). Some of these go
 //! backwards in time, which dashpots and slip do not allow; there a sub-step is one step of order two.
 //!
@@ -14,6 +18,7 @@ use glam::DMat3;
 
 use super::drift::drift_body;
 use super::kick::kick_body;
+use crate::contact::SinceKick;
 use crate::contact::wall::{self, FrictionContacts, WallContactOutput, wall_contact_forces};
 use crate::kinematics::Kinematics;
 use crate::{Batch, BodyForces, BodyModel, BodyState, FrictionSpring, Model, RunTotals, Wrench};
@@ -33,10 +38,20 @@ const W4: f64 = 0.082_213_596_293_550_8;
 const W5: f64 = 0.798_543_990_934_83;
 
 /// Advances every body that may touch a wall by one step, in sub-steps whose energy error is below `tolerance` times the
-/// kinetic and elastic energy, or that have the shortest length.
+/// kinetic and elastic energy E, or that have the shortest length. With dashpots or friction the difference of the velocities
+/// of one step and two half steps, in the norm √(½ M v² + ½ ω·I ω), is below `tolerance` times √E, too.
 pub fn substep(batch: &mut Batch, tolerance: f64) {
     let Batch {
-        model, first, bodies, springs, may_touch, forces, next_springs, workspaces, ..
+        model,
+        time,
+        first,
+        bodies,
+        springs,
+        may_touch,
+        forces,
+        next_springs,
+        workspaces,
+        ..
     } = batch;
     let workspace = &mut workspaces[0];
     for (index, body) in model.bodies[*first..].iter().take(bodies.len()).enumerate() {
@@ -46,6 +61,7 @@ pub fn substep(batch: &mut Batch, tolerance: f64) {
         let mut stepper = BodyStepper {
             model,
             body,
+            time: *time,
             state: &mut bodies[index],
             springs: &mut springs[index],
             forces: &mut forces[index],
@@ -61,6 +77,8 @@ pub fn substep(batch: &mut Batch, tolerance: f64) {
 struct BodyStepper<'a> {
     model: &'a Model,
     body: &'a BodyModel,
+    /// Time at the beginning of the step (s).
+    time: f64,
     state: &'a mut BodyState,
     springs: &'a mut Vec<FrictionSpring>,
     forces: &'a mut BodyForces,
@@ -101,14 +119,27 @@ impl BodyStepper<'_> {
         while at < whole {
             let (before, impulse) = (*self.state, self.impulse);
             saved_springs.clone_from(self.springs);
-            let part = self.sub_step(size);
-            let end = self.energy();
-            let error = end.total() + part.lost() - start.total();
-            let bound = (tolerance * energy_at_start.max(end.kinetic + end.elastic))
-                .max(start.rounding() + end.rounding());
+            let mut part = self.sub_step(at, size);
+            let mut end = self.energy();
             let touched = part.max_depth > 0.0 || start.elastic > 0.0 || end.elastic > 0.0;
+            let mut difference = 0.0;
+            if touched && size > 1 && !self.is_elastic() {
+                let whole_step = *self.state;
+                (*self.state, self.impulse) = (before, impulse);
+                self.springs.clone_from(saved_springs);
+                totals.evaluations += part.evaluations;
+                part = self.sub_step(at, size / 2);
+                part += self.sub_step(at + size / 2, size / 2);
+                end = self.energy();
+                difference = self.energy_of_difference(&whole_step).sqrt();
+            }
+            let error = end.total() + part.lost() - start.total();
+            let in_play = energy_at_start.max(end.kinetic + end.elastic);
+            let bound = (tolerance * in_play).max(start.rounding() + end.rounding());
+            let is_accurate = error.abs() <= bound
+                && difference <= tolerance.max(16.0 * f64::EPSILON) * in_play.sqrt();
             totals.evaluations += part.evaluations;
-            if touched && error.abs() > bound && size > 1 {
+            if touched && !is_accurate && size > 1 {
                 (*self.state, self.impulse) = (before, impulse);
                 self.springs.clone_from(saved_springs);
                 size /= 2;
@@ -159,30 +190,51 @@ impl BodyStepper<'_> {
         true
     }
 
-    /// One sub-step of `size` units.
-    fn sub_step(&mut self, size: u64) -> RunTotals {
-        let h = self.model.dt * (size as f64 / (1u64 << MAX_HALVINGS) as f64);
+    /// The kinetic energy of the difference between the velocities of this state and another one (J).
+    fn energy_of_difference(&self, other: &BodyState) -> f64 {
+        let difference = BodyState {
+            velocity: self.state.velocity - other.velocity,
+            angular_momentum: self.state.angular_momentum - other.angular_momentum,
+            ..*self.state
+        };
+        Kinematics::new(self.body, &difference).kinetic_energy(difference.angular_momentum)
+    }
+
+    /// Whether all contacts are springs without losses.
+    fn is_elastic(&self) -> bool {
+        self.body.contacts.iter().all(|law| law.is_elastic())
+    }
+
+    /// One sub-step of `size` units, which begins `at` units after the beginning of the step.
+    fn sub_step(&mut self, at: u64, size: u64) -> RunTotals {
+        let unit = self.model.dt / (1u64 << MAX_HALVINGS) as f64;
+        let (start, h) = (self.time + at as f64 * unit, size as f64 * unit);
         let is_weakly_damped =
             self.model.velocity_damping_stiffness / self.body.particle_mass() * h < 0.1;
-        let is_elastic = self.body.contacts.iter().all(|law| law.is_elastic());
-        if !(is_elastic && is_weakly_damped && size >> (MAX_HALVINGS - MAX_COMPOSED_HALVINGS) > 0) {
-            return self.drift_kick_drift(h);
+        if !(self.is_elastic()
+            && is_weakly_damped
+            && size >> (MAX_HALVINGS - MAX_COMPOSED_HALVINGS) > 0)
+        {
+            return self.drift_kick_drift(start, h);
         }
         let mut totals = RunTotals::default();
         for weight in WEIGHTS {
-            totals += self.drift_kick_drift(weight * h);
+            totals += self.drift_kick_drift(start, weight * h);
         }
         totals
     }
 
-    fn drift_kick_drift(&mut self, h: f64) -> RunTotals {
+    /// A step of length `h` (s) at the time `start` (s), which matters to friction only.
+    fn drift_kick_drift(&mut self, start: f64, h: f64) -> RunTotals {
         let mut totals = self.drift(0.5 * h);
         let output = WallContactOutput {
             forces: self.forces,
             next_springs: self.next_springs,
             friction_contacts: self.friction_contacts,
         };
-        wall_contact_forces(self.model, self.body, self.state, self.springs, output, h);
+        let since_kick = SinceKick::at_sub_step(start, h);
+        let (model, body) = (self.model, self.body);
+        wall_contact_forces(model, body, self.state, self.springs, output, h, &since_kick);
         totals += kick_body(self.body, self.state, self.forces, h);
         let contact = self.forces.contact();
         self.impulse += Wrench { force: contact.force * h, torque: contact.torque * h };

@@ -94,7 +94,7 @@ impl<'a> LaneFiller<'a> {
         if count == 0 {
             return;
         }
-        let ContactContext { poses, time_since_kick, .. } = *self.context;
+        let ContactContext { poses, since_kick, .. } = *self.context;
         let ChunkContacts { lanes, lanes_used, input, .. } = &mut *self.contacts;
         let current = &mut lanes[*lanes_used];
         current.count = count;
@@ -108,7 +108,7 @@ impl<'a> LaneFiller<'a> {
         *lanes_used += 1;
         current.depth[count..].fill(0.0);
         if current.has_friction {
-            current.advance_friction(simd, input, poses, time_since_kick);
+            current.advance_friction(simd, input, poses, &since_kick);
         }
         current.add_forces::<S, PREDICT>(simd, poses, forces, losses);
         if !PREDICT {

@@ -10,7 +10,8 @@ use fearless_simd::{Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::near_wall::NearWall;
-use crate::contact::law::coulomb::dashpot_fraction;
+use crate::contact::SinceKick;
+use crate::contact::law::coulomb::{dashpot_fraction, slip};
 use crate::contact::law::linear::LinearSpringDashpot;
 use crate::contact::law::{NormalForce, NormalLaw};
 use crate::kinematics::Kinematics;
@@ -52,13 +53,19 @@ struct WallContactLanes {
 
 impl FrictionContacts {
     /// Lists the contacts of a body with walls that have friction. `old` are its springs so far.
-    pub fn detect(&mut self, model: &Model, kinematics: &Kinematics, old: &[FrictionSpring]) {
+    pub fn detect(
+        &mut self,
+        model: &Model,
+        kinematics: &Kinematics,
+        old: &[FrictionSpring],
+        since_kick: &SinceKick,
+    ) {
         self.contacts.clear();
         self.released = 0.0;
         if !kinematics.body.has_friction && old.is_empty() {
             return;
         }
-        let mut springs = OldSprings { kinematics, model, old, released: 0.0 };
+        let mut springs = OldSprings { kinematics, model, old, since_kick, released: 0.0 };
         let particles = kinematics.body.shape.particles();
         for (index, (wall, law)) in model.walls.iter().zip(&kinematics.body.contacts).enumerate() {
             let near = NearWall::new(wall, kinematics).filter(|_| law.friction > 0.0);
@@ -134,6 +141,7 @@ struct OldSprings<'a> {
     kinematics: &'a Kinematics<'a>,
     model: &'a Model,
     old: &'a [FrictionSpring],
+    since_kick: &'a SinceKick,
     released: f64,
 }
 
@@ -159,6 +167,8 @@ impl OldSprings<'_> {
                         if let Some(old) = self.take(wall, slot, lanes.particle[lane]) {
                             set(&mut lanes.anchor, lane, old.anchor);
                             set(&mut lanes.old_stretch, lane, old.stretch);
+                        } else {
+                            self.set_anchor_at_touch(near.normal, lane, &mut lanes);
                         }
                     }
                     contacts.push(lanes);
@@ -188,6 +198,17 @@ impl OldSprings<'_> {
         let arm = r.rotated(simd, kinematics.rotation);
         lanes.arm = arm.store();
         lanes.anchor = (Vec3x8::splat(simd, kinematics.position) + arm).store();
+    }
+
+    /// Puts the anchor of a new contact to where the particle touched the wall, within the latest flight.
+    fn set_anchor_at_touch(&self, normal: DVec3, lane: usize, lanes: &mut WallContactLanes) {
+        let kinematics = self.kinematics;
+        let arm = vector(&lanes.arm, lane);
+        let u = kinematics.velocity + kinematics.angular_velocity.cross(arm);
+        let closing = -u.dot(normal);
+        let duration = self.since_kick.new_contact_duration(lanes.depth[lane], closing);
+        let anchor = vector(&lanes.anchor, lane) - (u + normal * closing) * duration;
+        set(&mut lanes.anchor, lane, anchor);
     }
 
     /// The spring that this contact had; springs that sort before it are released.
@@ -326,9 +347,10 @@ impl WallEvaluation<'_> {
         let stretch = (position - Vec3x8::load(simd, &lanes.anchor)).perpendicular_to(n);
         let tension = stretch.dot(stretch).sqrt() * law.friction_spring;
         let slips = tension.simd_gt(limit);
-        let kept = slips.select(limit / tension, f64x8::splat(simd, 1.0));
-        let held = stretch * kept;
-        let lost = (Vec3x8::load(simd, &lanes.old_stretch) + held).dot(stretch - held);
+        let (old, tangential) = (Vec3x8::load(simd, &lanes.old_stretch), u.perpendicular_to(n));
+        let longest = limit * (1.0 / law.friction_spring);
+        let held = Vec3x8::select(slips, slip(simd, old, stretch, longest, tangential), stretch);
+        let lost = (old + held).dot(stretch - held);
         sums.slip_loss += weights.scale(lost * (0.5 * law.friction_spring));
         let friction = held * f64x8::splat(simd, -law.friction_spring);
         let weighted_friction = weights.scale_vector(friction);
@@ -338,7 +360,7 @@ impl WallEvaluation<'_> {
         lanes.slips = slips.to_bitmask();
 
         // tangential dashpot, within what the spring leaves of the limit
-        let dashpot = u.perpendicular_to(n) * f64x8::splat(simd, -law.friction_damping);
+        let dashpot = tangential * f64x8::splat(simd, -law.friction_damping);
         let dashpot =
             weights.scale_vector(dashpot * dashpot_fraction(simd, friction, dashpot, limit));
         sums.dashpot += dashpot;

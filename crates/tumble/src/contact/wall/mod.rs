@@ -16,6 +16,7 @@ mod tests;
 
 use self::frictionless::NormalSprings;
 use self::near_wall::NearWall;
+use crate::contact::SinceKick;
 use crate::kinematics::Kinematics;
 use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, WallPlane};
 
@@ -39,6 +40,7 @@ pub(crate) fn wall_contact_forces(
     springs: &[FrictionSpring],
     output: WallContactOutput,
     h: f64,
+    since_kick: &SinceKick,
 ) {
     let WallContactOutput { forces, next_springs, friction_contacts } = output;
     forces.clear_contact();
@@ -49,7 +51,7 @@ pub(crate) fn wall_contact_forces(
     }
     let kinematics = Kinematics::new(body, state);
     let normal_springs = NormalSprings::new(model, &kinematics);
-    friction_contacts.detect(model, &kinematics, springs);
+    friction_contacts.detect(model, &kinematics, springs, since_kick);
     evaluate(model, &kinematics, &normal_springs, forces, friction_contacts);
     if h != 0.0 && forces.max_depth > 0.0 && body.is_damped {
         // a second evaluation at the mid-kick velocities of the first makes dashpots second order
