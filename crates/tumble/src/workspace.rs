@@ -8,8 +8,8 @@ use crate::{FrictionSpring, RunTotals};
 pub(crate) struct Workspace {
     /// Contacts of one body with walls that have friction.
     pub friction_contacts: FrictionContacts,
-    /// Friction springs of one body at the beginning of a sub-step.
-    pub saved_springs: Vec<FrictionSpring>,
+    /// Friction springs of one body at the beginning of a sub-step, and at its end.
+    pub saved_springs: [Vec<FrictionSpring>; 2],
     /// What the batch adds to the totals of the run.
     pub totals: RunTotals,
     /// The first body of the batch that failed a check, by index.

@@ -45,11 +45,11 @@ impl SinceKick {
         }
     }
 
-    /// At the kick of a sub-step of length `h` (s) that begins `at` (s) after the beginning of the run.
-    pub fn at_sub_step(at: f64, h: f64) -> Self {
-        let is_first = at == 0.0;
-        let duration = if is_first { 0.5 * h } else { h };
-        Self { time: at + 0.5 * h, duration, new_contact_limit: duration, is_first }
+    /// At a kick at `time` (s), at most `duration` (s) after the latest one.
+    pub fn at_sub_step(time: f64, duration: f64) -> Self {
+        let is_first = duration >= time;
+        let duration = duration.min(time);
+        Self { time, duration, new_contact_limit: duration, is_first }
     }
 
     /// No time at all.

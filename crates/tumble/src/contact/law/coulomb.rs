@@ -34,9 +34,11 @@ pub(in crate::contact) fn slip<S: Simd>(
     let is_crossing = square.simd_gt(zero) & root.simd_gt(zero) & root.simd_lt(one);
     let within = is_crossing.select(root, zero);
     let start = unit(simd, old + path * within);
+    // the length is that at the limit throughout, which changes with the normal force
+    let length = (old.dot(old).sqrt() + limit) * 0.5;
     // with r = 1/(1 + x) both factors are free of singularities
     let rest = a.sqrt() * (one - within);
-    let r = limit.simd_gt(zero).select(limit / (limit + rest), zero);
+    let r = length.simd_gt(zero).select(length / (length + rest), zero);
     let decrease = r * r * 2.0 / (r * r + 1.0);
     let weight = (one - r) / (one + r);
     let (middle, now) = (unit(simd, path), unit(simd, u));
