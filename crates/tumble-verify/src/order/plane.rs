@@ -38,7 +38,7 @@ enum PlaneMotion {
     Turning,
 }
 
-const AMPLITUDE: DVec3 = DVec3::new(0.02, 0.0, 0.01);
+const AMPLITUDE: DVec3 = DVec3::new(0.01, 0.0, -0.02);
 const FREQUENCY: f64 = 6.0;
 const PHASE: f64 = 0.7;
 const SPIN: DVec3 = DVec3::new(0.0, 4.0, 0.0);
@@ -75,7 +75,7 @@ impl Setting {
     /// Initial velocity and angular velocity.
     fn start(&self) -> (DVec3, DVec3) {
         match (self.is_plate, self.slips) {
-            (true, true) => (DVec3::new(1.5, 0.0, 0.7), DVec3::Y * 20.0),
+            (true, true) => (DVec3::new(4.0, 0.0, 2.0), DVec3::Y * 20.0),
             (true, false) => (DVec3::new(0.04, 0.0, 0.03), DVec3::Y * 0.4),
             (false, true) => (DVec3::new(2.0, 0.0, 1.0), DVec3::new(0.0, 5.0, 0.0)),
             (false, false) => (DVec3::new(0.24, 0.0, 0.1), DVec3::new(1.3, 5.0, -2.0)),

@@ -51,6 +51,8 @@ pub(super) struct ContactLanes {
     pub has_friction: bool,
     /// Whether any of the bodies has a surface velocity.
     pub has_surface_velocity: bool,
+    /// Whether no kick comes before this one.
+    pub is_first_kick: bool,
     /// Stretch of the tangential spring at the latest kick, turned with the contact (m).
     pub old_stretch: Columns,
     /// Its stretch now, before the friction limit (m).
@@ -111,6 +113,7 @@ impl Default for ContactLanes {
             friction_damping: zero,
             has_friction: false,
             has_surface_velocity: false,
+            is_first_kick: false,
             old_stretch: vectors,
             stretch: vectors,
             held: vectors,

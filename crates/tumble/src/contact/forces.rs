@@ -88,8 +88,10 @@ impl ContactLanes {
         let held = Vec3x8::select(slips, slip(simd, old, stretch, limit / k, u), stretch);
         if !PREDICT {
             self.held = held.store();
-            // the work of friction from the old to the new stretch, less what the spring stores
-            let lost = (old + held).dot(stretch - held);
+            // the work of friction from the old to the new stretch, less what the spring stores; the flight before the first
+            // kick takes its work from that alone
+            let before = if self.is_first_kick { held } else { old };
+            let lost = (before + held).dot(stretch - held);
             let zero = f64x8::splat(simd, 0.0);
             *slip_loss = slips.select(k * 0.5 * lost, zero).into();
         }

@@ -31,6 +31,7 @@ impl ContactLanes {
         poses: &[BodyPose],
         since_kick: &SinceKick,
     ) {
+        self.is_first_kick = since_kick.is_first;
         let n = Vec3x8::load(simd, &self.normal);
         let zero = f64x8::splat(simd, 0.0);
         let mid_flight = self.mid_flight(simd, input, poses, since_kick.duration);
@@ -136,4 +137,27 @@ fn turned_by<S: Simd>(simd: S, vector: Vec3x8<S>, rotation: Vec3x8<S>) -> Vec3x8
     let half = rotation * f64x8::splat(simd, 0.5);
     let factor = f64x8::splat(simd, 2.0) / (half.dot(half) + 1.0);
     vector + half.cross(vector + half.cross(vector)) * factor
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+    use crate::lanes::vector;
+
+    #[test]
+    fn a_turn_keeps_the_length_and_is_exact_to_second_order() {
+        let (v, axis) = (DVec3::new(0.3, -0.5, 0.8), DVec3::new(2.0, 1.0, -2.0) / 3.0);
+        let error = |angle: f64| {
+            let turned = dispatch!(Level::new(), simd => {
+                let of = |v: DVec3| Vec3x8::splat(simd, v);
+                vector(&turned_by(simd, of(v), of(axis * angle)).store(), 0)
+            });
+            assert!((turned.length() / v.length() - 1.0).abs() < 1e-14);
+            (turned - glam::DQuat::from_axis_angle(axis, angle) * v).length()
+        };
+        let order = libm::log2(error(0.1) / error(0.05));
+        assert!((order - 3.0).abs() < 0.01, "local error of order {order}");
+    }
 }

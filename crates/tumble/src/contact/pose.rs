@@ -165,3 +165,52 @@ fn rounding_bound(body: &BodyModel, state: &BodyState) -> f64 {
 fn length(v: DVec3) -> f64 {
     v.length_squared().sqrt()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use crate::{Body, MassModel, Oscillation, Prescribed, Primitive, Sampling, Shape, World};
+
+    /// The largest error of the velocities in the middle of a flight of `h` (s), against the state after half of it.
+    fn mid_flight_error(body: &Body, h: f64) -> f64 {
+        let world = World::builder().dt(0.5 * h).velocity_damping_stiffness(0.05);
+        let mut world = world.body(body.clone()).build().unwrap();
+        let start = 64;
+        while world.time() < f64::from(start) * 1e-3 - 0.25 * h {
+            world.step().unwrap();
+        }
+        world.step().unwrap();
+        let (velocity, omega) = (world.body(0).velocity(), world.body(0).angular_velocity());
+        world.step().unwrap();
+        let since_kick = SinceKick::at_sub_step(world.time(), h);
+        let pose = BodyPose::new(world.model(), 0, &world.state().bodies[0], &since_kick);
+        (pose.drift_velocity - velocity)
+            .length()
+            .max((pose.drift_angular_velocity - omega).length())
+    }
+
+    #[test]
+    fn velocities_in_the_middle_of_a_flight_are_of_second_order() {
+        let cuboid = Primitive::Box { size: DVec3::new(0.3, 0.5, 0.8), divisions: 1 };
+        let oscillation = Oscillation { amplitude: DVec3::X, frequency: 3.0, phase: 0.3 };
+        for (mass_model, oscillation) in [
+            (MassModel::Particles, None),
+            (MassModel::Solid, None),
+            (MassModel::Solid, Some(oscillation)),
+        ] {
+            let mesh = cuboid.mesh().unwrap();
+            let shape = Shape::from_mesh(&mesh, Sampling::Vertices, mass_model).unwrap();
+            let mut body = Body::new(shape).mass(0.1).velocity(DVec3::new(1.0, 2.0, 3.0));
+            body = body.angular_velocity(DVec3::new(4.0, 5.0, -6.0));
+            if oscillation.is_some() {
+                let prescribed = Prescribed { oscillation, ..Prescribed::default() };
+                body = body.motion(Motion::Prescribed(prescribed)).angular_velocity(DVec3::ZERO);
+            }
+            let (coarse, fine) = (mid_flight_error(&body, 2e-3), mid_flight_error(&body, 1e-3));
+            // exact for an oscillation
+            assert!(fine < 1e-12 || (coarse / fine - 4.0).abs() < 0.2, "{coarse} {fine}");
+        }
+    }
+}

@@ -13,8 +13,8 @@ pub(crate) struct SinceKick {
     pub duration: f64,
     /// How long a contact may have lasted that was not there at the latest kick (s).
     new_contact_limit: f64,
-    /// Whether the flight began with the run: a contact may be older than it.
-    is_first: bool,
+    /// Whether the flight began with the run: a contact may be older than it, and no kick comes before it.
+    pub is_first: bool,
 }
 
 impl SinceKick {
@@ -85,5 +85,36 @@ impl SinceKick {
     /// A contact whose bodies do not approach began before the flight, if it is not one that another surface took over.
     fn duration_without_approach(&self) -> f64 {
         if self.is_first { self.new_contact_limit } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+
+    use super::*;
+    use crate::lanes::LANES;
+
+    #[test]
+    fn a_new_contact_has_lasted_since_its_bodies_touched() {
+        let later = SinceKick::at_sub_step(1.0, 0.1);
+        let first = SinceKick::at_sub_step(0.05, 0.1);
+        for (since_kick, depth, closing, expected) in [
+            (&later, 0.02, 0.5, 0.04),
+            (&later, 0.2, 0.5, 0.1),
+            (&later, 0.02, -0.5, 0.0),
+            // a contact that does not close may be there from the start of the run
+            (&first, 0.2, 0.5, 0.05),
+            (&first, 0.02, -0.5, 0.05),
+            (&first, 0.02, 0.0, 0.05),
+            (&SinceKick::none(1.0), 0.02, 0.5, 0.0),
+        ] {
+            assert_eq!(since_kick.new_contact_duration(depth, closing), expected);
+            let lanes: [f64; LANES] = dispatch!(Level::new(), simd => {
+                let splat = |value| f64x8::splat(simd, value);
+                since_kick.new_contact_durations(simd, splat(depth), splat(closing)).into()
+            });
+            assert_eq!(lanes, [expected; LANES]);
+        }
     }
 }

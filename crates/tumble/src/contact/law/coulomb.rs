@@ -81,3 +81,91 @@ pub(in crate::contact) fn dashpot_fraction<S: Simd>(
     let beta = beta.simd_lt(one).select(beta, one);
     a.simd_gt(zero).select(beta, zero)
 }
+
+#[cfg(test)]
+mod tests {
+    use fearless_simd::{Level, dispatch};
+    use glam::{DMat3, DVec3};
+
+    use super::*;
+    use crate::lanes::{LANES, vector};
+
+    /// Length of the springs (m) and speed of the slip (m/s).
+    const LIMIT: f64 = 1e-3;
+    const SPEED: f64 = 2.0;
+
+    /// Slip velocity at a time (s); its direction turns by 30 rad/s.
+    fn velocity(time: f64) -> DVec3 {
+        DMat3::from_rotation_y(0.3 + 30.0 * time) * DVec3::X * SPEED
+    }
+
+    fn slipped(old: DVec3, stretch: DVec3, u: DVec3) -> DVec3 {
+        dispatch!(Level::new(), simd => {
+            let of = |v: DVec3| Vec3x8::splat(simd, v);
+            let limit = f64x8::splat(simd, LIMIT);
+            vector(&slip(simd, of(old), of(stretch), limit, of(u)).store(), LANES - 1)
+        })
+    }
+
+    /// The stretch after `time` (s) in steps of `h` (s), from a right angle to the velocity.
+    fn stepped(time: f64, h: f64) -> DVec3 {
+        let mut stretch = DMat3::from_rotation_y(1.0) * velocity(0.0).normalize() * LIMIT;
+        for step in 0..(time / h).round() as u32 {
+            let t = f64::from(step) * h;
+            stretch = slipped(stretch, stretch + velocity(t + 0.5 * h) * h, velocity(t + h));
+            assert!((stretch.length() / LIMIT - 1.0).abs() < 1e-14);
+        }
+        stretch
+    }
+
+    /// The angle θ of ξ obeys θ' = (u/L) sin(φ − θ): tiny steps of the midpoint method.
+    fn exact(time: f64) -> DVec3 {
+        let (mut angle, count) = (1.3, 100_000);
+        let h = time / f64::from(count);
+        let rate = |t: f64, angle: f64| SPEED / LIMIT * libm::sin(0.3 + 30.0 * t - angle);
+        for step in 0..count {
+            let t = f64::from(step) * h;
+            angle += h * rate(t + 0.5 * h, angle + 0.5 * h * rate(t, angle));
+        }
+        DMat3::from_rotation_y(angle) * DVec3::X * LIMIT
+    }
+
+    #[test]
+    fn the_direction_of_slip_is_of_second_order() {
+        let time = 1.6e-3;
+        let error = |h: f64| (stepped(time, h) - exact(time)).length() / LIMIT;
+        let order = libm::log2(error(1e-4) / error(5e-5));
+        assert!((order - 2.0).abs() < 0.15, "{order}");
+    }
+
+    /// In steps in which it slips by many times its length, the spring follows the velocity at the end of the step, with
+    /// the lag L/u of the exact solution.
+    #[test]
+    fn the_direction_of_slip_is_that_now_in_large_steps() {
+        let h = 0.01;
+        let lag =
+            (stepped(0.1, h).normalize() - velocity(0.1 - LIMIT / SPEED).normalize()).length();
+        assert!(lag < 0.01, "{lag}");
+    }
+
+    #[test]
+    fn slip_is_finite_in_every_limit() {
+        let reversed = slipped(DVec3::X * -LIMIT, DVec3::X * 0.1, DVec3::X);
+        assert!((reversed - DVec3::X * LIMIT).length() < 1e-15, "{reversed}");
+        // beyond a limit that has shrunk, at rest
+        let shrunk = slipped(DVec3::X * 0.1, DVec3::X * 0.1, DVec3::ZERO);
+        assert!((shrunk - DVec3::X * LIMIT).length() < 1e-15, "{shrunk}");
+        // from no stretch
+        let new = slipped(DVec3::ZERO, DVec3::Z * 0.1, DVec3::Z);
+        assert!((new - DVec3::Z * LIMIT).length() < 1e-15, "{new}");
+        // about to be reversed by the kick
+        let last = slipped(DVec3::X * LIMIT, DVec3::X * 0.1, -DVec3::X);
+        assert!((last - DVec3::X * LIMIT).length() < 1e-15, "{last}");
+        let no_limit = dispatch!(Level::new(), simd => {
+            let of = |v: DVec3| Vec3x8::splat(simd, v);
+            let zero = f64x8::splat(simd, 0.0);
+            vector(&slip(simd, of(DVec3::X), of(-DVec3::X), zero, of(DVec3::Z)).store(), 0)
+        });
+        assert_eq!(no_limit, DVec3::ZERO);
+    }
+}

@@ -29,6 +29,8 @@ pub(crate) struct FrictionContacts {
     released: f64,
     /// Energy (J) that the latest evaluation loses to slip.
     slip_loss: f64,
+    /// Whether no kick comes before this one.
+    is_first_kick: bool,
 }
 
 /// Up to eight contacts with one wall, one per lane. Lanes without a contact have depth zero.
@@ -61,7 +63,7 @@ impl FrictionContacts {
         since_kick: &SinceKick,
     ) {
         self.contacts.clear();
-        self.released = 0.0;
+        (self.released, self.is_first_kick) = (0.0, since_kick.is_first);
         if !kinematics.body.has_friction && old.is_empty() {
             return;
         }
@@ -85,7 +87,8 @@ impl FrictionContacts {
         for lanes in self.contacts.chunk_by_mut(|a, b| a.wall == b.wall) {
             let wall = lanes[0].wall as usize;
             let (normal, law) = (model.walls[wall].normal, kinematics.body.contacts[wall]);
-            let evaluation = WallEvaluation { kinematics, normal, law };
+            let is_first_kick = self.is_first_kick;
+            let evaluation = WallEvaluation { kinematics, normal, law, is_first_kick };
             dispatch!(kinematics.level, simd => evaluation.add_all(simd, lanes, forces, &mut self.slip_loss));
         }
         forces.slip_loss = self.released + self.slip_loss;
@@ -249,6 +252,7 @@ struct WallEvaluation<'a> {
     kinematics: &'a Kinematics<'a>,
     normal: DVec3,
     law: ContactLaw,
+    is_first_kick: bool,
 }
 
 /// Weights of the particles of eight contacts; no multiplication where all particles weigh the same.
@@ -350,7 +354,9 @@ impl WallEvaluation<'_> {
         let (old, tangential) = (Vec3x8::load(simd, &lanes.old_stretch), u.perpendicular_to(n));
         let longest = limit * (1.0 / law.friction_spring);
         let held = Vec3x8::select(slips, slip(simd, old, stretch, longest, tangential), stretch);
-        let lost = (old + held).dot(stretch - held);
+        // the flight before the first kick takes its work from that alone
+        let before = if self.is_first_kick { held } else { old };
+        let lost = (before + held).dot(stretch - held);
         sums.slip_loss += weights.scale(lost * (0.5 * law.friction_spring));
         let friction = held * f64x8::splat(simd, -law.friction_spring);
         let weighted_friction = weights.scale_vector(friction);
