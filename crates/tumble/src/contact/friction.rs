@@ -109,7 +109,9 @@ impl ContactLanes {
         let by_first = centre - normal * (offset - depth_change * 0.5);
         let by_second = other_centre + normal * other_offset - between_bodies;
         let arm = Vec3x8::select(is_mesh_point, by_second, by_first);
-        let other_arm = arm + between_bodies;
+        // of spheres from its own centre, so that the order of the bodies does not matter
+        let by_sphere = other_centre + normal * (other_offset - depth_change * 0.5);
+        let other_arm = Vec3x8::select(is_spheres, by_sphere, arm + between_bodies);
         let mut u = drift + (omega.cross(arm) - other_omega.cross(other_arm));
         let closing = zero - u.dot(normal);
         if self.has_surface_velocity {
