@@ -12,6 +12,7 @@ mod friction;
 mod invariance;
 mod kinematic;
 mod ledger;
+mod order;
 mod remeshing;
 mod restitution;
 mod setup;
@@ -45,6 +46,9 @@ pub const CASES: &[Case] = &[
     kinematic::WALL_OR_MESH,
     kinematic::BELT,
     kinematic::PISTON,
+    order::PLANE,
+    order::SPHERES,
+    order::TOUCH,
     remeshing::REMESHING,
     invariance::SCALE,
     invariance::WALLS,

@@ -168,10 +168,9 @@ impl ContactLaw {
         self.damping == 0.0 && self.damping_ratio == 0.0 && self.friction == 0.0
     }
 
-    /// Whether any force depends on velocity.
+    /// Whether any force depends on velocity: dashpots, and friction, which slips along the velocity.
     pub fn is_damped(&self) -> bool {
-        let tangential = self.friction_damping > 0.0 || self.friction_damping_factor > 0.0;
-        self.damping > 0.0 || self.damping_ratio > 0.0 || (self.friction > 0.0 && tangential)
+        self.damping > 0.0 || self.damping_ratio > 0.0 || self.friction > 0.0
     }
 
     /// Whether the dashpots of a contact depend on the other contacts between the same bodies.

@@ -45,12 +45,12 @@ impl PairMaterial {
         }
     }
 
-    /// Whether any force depends on velocity.
+    /// Whether any force depends on velocity: dashpots, and friction, which slips along the velocity.
     pub fn is_damped(&self) -> bool {
         let normal = match self.damping {
             PairDamping::Dashpot(c) | PairDamping::Ratio(c) => c > 0.0,
         };
-        normal || (self.friction > 0.0 && self.friction_damping != Some(0.0))
+        normal || self.friction > 0.0
     }
 
     /// The contact law of a particle of this body against the `other` body.

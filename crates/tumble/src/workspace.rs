@@ -10,8 +10,8 @@ pub(crate) struct Workspace {
     pub friction_contacts: FrictionContacts,
     /// Contacts with walls of each body of the batch, where bodies touch each other too.
     pub wall_contacts: Vec<WallContacts>,
-    /// Friction springs of one body at the beginning of a sub-step.
-    pub saved_springs: Vec<FrictionSpring>,
+    /// Friction springs of one body at the beginning of a sub-step, and at its end.
+    pub saved_springs: [Vec<FrictionSpring>; 2],
     /// What the batch adds to the totals of the run.
     pub totals: RunTotals,
     /// The first body of the batch that failed a check, by index.

@@ -33,7 +33,7 @@ impl WorldBuilder {
                 "left out with the integrator \"euler\": only \"splitting\" refines its steps";
             check("energy_tolerance", refines, &tolerance, allowed);
             let alone = self.bodies.iter().all(|body| body.surface == Surface::None);
-            let allowed = "left out where bodies collide with each other: it refines the steps of each body separately";
+            let allowed = "left out where bodies collide with each other: it refines the steps of each body separately, so use a smaller `dt` instead";
             check("energy_tolerance", alone, &tolerance, allowed);
         }
     }

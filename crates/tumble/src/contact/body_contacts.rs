@@ -10,9 +10,10 @@ use super::narrow_phase;
 use super::neighbour_list::{ChunkNeighbours, NeighbourLists};
 use super::pair::Pair;
 use super::pose::BodyPose;
+use super::since_kick::SinceKick;
 use super::tunnelling::TunnellingRisk;
 use crate::parallel::{self, CHUNK};
-use crate::{BodyForces, ContactKind, Integrator, Model, PairSpring, State};
+use crate::{BodyForces, ContactKind, Model, PairSpring, State};
 
 /// Contacts between bodies, and of spheres with walls. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -30,7 +31,7 @@ pub(crate) struct BodyContacts {
 
 impl BodyContacts {
     /// Rebuilds the neighbour lists if a body has moved by its skin. The poses are those of `state` already.
-    pub fn update_neighbour_lists(&mut self, model: &Model, state: &State) {
+    pub fn update_neighbour_lists(&mut self, model: &Model, state: &State, since_kick: &SinceKick) {
         let has_poses = self.poses.len() == model.bodies.len();
         let is_valid = |pose: &BodyPose| pose.path <= pose.list_valid_until; // false for NaN
         if has_poses && self.poses.iter().all(is_valid) {
@@ -40,7 +41,8 @@ impl BodyContacts {
         if !has_poses || !self.poses.iter().all(|pose| pose.path.is_finite()) {
             self.poses.clear();
             let states = state.bodies.iter().enumerate();
-            self.poses.extend(states.map(|(index, state)| BodyPose::new(model, index, state)));
+            let pose = |(index, state)| BodyPose::new(model, index, state, since_kick);
+            self.poses.extend(states.map(pose));
             (self.lists, self.contacts) = (NeighbourLists::default(), Vec::new());
         }
         self.lists.build(model, &mut self.poses);
@@ -58,10 +60,10 @@ impl BodyContacts {
         &mut self,
         model: &Model,
         springs: &[PairSpring],
-        time_since_kick: f64,
+        since_kick: SinceKick,
     ) {
         self.springs.clear();
-        let context = ContactContext { model, poses: &self.poses, springs, time_since_kick };
+        let context = ContactContext { model, poses: &self.poses, springs, since_kick };
         self.contacts.resize_with(self.lists.chunks.len(), ChunkContacts::default);
         let chunks = &mut self.lists.chunks;
         parallel::for_each_zipped(&mut self.contacts, chunks, |chunk, contacts, neighbours| {
@@ -88,13 +90,14 @@ impl BodyContacts {
         model: &Model,
         springs: &[PairSpring],
         forces: &[BodyForces],
-        h: f64,
+        since_kick: SinceKick,
     ) {
+        let h = model.dt;
         self.contacts.resize_with(self.lists.chunks.len(), ChunkContacts::default);
         self.springs.clear();
         let mut finished = 0;
         for (chunk, forces) in forces.chunks(CHUNK).enumerate() {
-            let context = ContactContext { model, poses: &self.poses, springs, time_since_kick: h };
+            let context = ContactContext { model, poses: &self.poses, springs, since_kick };
             let (neighbours, contacts) = (&mut self.lists.chunks[chunk], &mut self.contacts[chunk]);
             contacts.take_buffers(&mut self.spare);
             detect::<true>(&context, chunk, contacts, neighbours);
@@ -139,12 +142,9 @@ impl BodyContacts {
             return 0.0;
         }
         // the tangential springs have stretched since the latest kick
-        let time_since_kick = match model.integrator {
-            Integrator::Splitting => 0.5 * model.dt,
-            Integrator::Euler => model.dt,
-        };
-        self.move_to(model, state);
-        self.evaluate::<true>(model, &state.pair_springs, time_since_kick);
+        let since_kick = SinceKick::at_end_of_step(model, state.time);
+        self.move_to(model, state, &since_kick);
+        self.evaluate::<true>(model, &state.pair_springs, since_kick);
         self.contacts.iter().map(ChunkContacts::elastic_energy).sum()
     }
 
@@ -155,8 +155,9 @@ impl BodyContacts {
         state: &State,
         mut visit: impl FnMut(&Pair, DVec3, f64),
     ) {
-        self.move_to(model, state);
-        self.evaluate::<true>(model, &[], 0.0);
+        let since_kick = SinceKick::none(state.time);
+        self.move_to(model, state, &since_kick);
+        self.evaluate::<true>(model, &[], since_kick);
         for (contacts, neighbours) in self.contacts.iter().zip(&self.lists.chunks) {
             contacts.for_each_contact(neighbours, &mut visit);
         }
@@ -175,11 +176,11 @@ impl BodyContacts {
     }
 
     /// Moves the poses to a state, and rebuilds the lists if necessary.
-    fn move_to(&mut self, model: &Model, state: &State) {
+    fn move_to(&mut self, model: &Model, state: &State, since_kick: &SinceKick) {
         if self.poses.len() == model.bodies.len() {
-            gather::update_poses(model, 0, &mut self.poses, &state.bodies);
+            gather::update_poses(model, 0, &mut self.poses, &state.bodies, since_kick);
         }
-        self.update_neighbour_lists(model, state);
+        self.update_neighbour_lists(model, state, since_kick);
     }
 }
 

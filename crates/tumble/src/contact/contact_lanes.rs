@@ -56,12 +56,14 @@ pub(super) struct ContactLanes {
     pub has_friction: bool,
     /// Whether any of the bodies has a surface velocity.
     pub has_surface_velocity: bool,
+    /// Whether no kick comes before this one.
+    pub is_first_kick: bool,
     /// Stretch of the tangential spring at the latest kick, turned with the contact (m).
     pub old_stretch: Columns,
     /// Its stretch now, before the friction limit (m).
     pub stretch: Columns,
-    /// The part of the stretch that the friction limit keeps.
-    pub kept: [f64; LANES],
+    /// The stretch that the friction limit allows (m).
+    pub held: Columns,
 }
 
 /// What the geometry of eight contacts is computed from.
@@ -118,9 +120,10 @@ impl Default for ContactLanes {
             has_patch: false,
             has_friction: false,
             has_surface_velocity: false,
+            is_first_kick: false,
             old_stretch: vectors,
             stretch: vectors,
-            kept: zero,
+            held: vectors,
         }
     }
 }
@@ -211,6 +214,6 @@ impl ContactLanes {
 
     /// Stretch of a friction spring after the latest evaluation (m).
     pub fn kept_stretch(&self, lane: usize) -> DVec3 {
-        vector(&self.stretch, lane) * self.kept[lane]
+        vector(&self.held, lane)
     }
 }

@@ -1,6 +1,7 @@
 //! Inputs of one evaluation of the contacts.
 
 use super::pose::BodyPose;
+use super::since_kick::SinceKick;
 use crate::{Model, PairSpring};
 
 /// The inputs of one evaluation of the contacts.
@@ -10,6 +11,6 @@ pub(super) struct ContactContext<'a> {
     pub poses: &'a [BodyPose],
     /// All friction springs after the latest kick.
     pub springs: &'a [PairSpring],
-    /// Time since the latest kick (s).
-    pub time_since_kick: f64,
+    /// The flight since the latest kick.
+    pub since_kick: SinceKick,
 }

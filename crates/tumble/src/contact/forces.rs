@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, f64x8, prelude::*};
 
 use super::contact_lanes::{ContactLanes, LaneVelocities};
-use super::law::coulomb::dashpot_fraction;
+use super::law::coulomb::{dashpot_fraction, slip};
 use super::law::{NormalForce, NormalLaw};
 use super::pair_forces::{LaneWrenches, PairForces, PairLosses};
 use super::patch_damping::touch_factors;
@@ -48,9 +48,10 @@ impl ContactLanes {
         let mut surface_power = [[0.0; LANES]; 2];
         if self.has_friction {
             let limit = f64x8::simd_from(simd, self.friction) * normal;
-            let spring = self.friction_spring_force::<S, PREDICT>(simd, limit, &mut slip);
-            let dashpot =
-                u.perpendicular_to(n) * (zero - f64x8::simd_from(simd, self.friction_damping));
+            let tangential = u.perpendicular_to(n);
+            let spring =
+                self.friction_spring_force::<S, PREDICT>(simd, limit, tangential, &mut slip);
+            let dashpot = tangential * (zero - f64x8::simd_from(simd, self.friction_damping));
             let dashpot = dashpot * dashpot_fraction(simd, spring, dashpot, limit);
             force += spring + dashpot;
             dashpot_force += dashpot;
@@ -82,26 +83,30 @@ impl ContactLanes {
         }
     }
 
-    /// Force of the tangential springs, limited to μ F_n (N); `slip` gets the energy that the cut dissipates (J).
+    /// Force of the tangential springs, limited to μ F_n (N); `u` is the tangential velocity, and `slip_loss` gets the energy
+    /// that slip dissipates (J).
     #[inline(always)]
     fn friction_spring_force<S: Simd, const PREDICT: bool>(
         &mut self,
         simd: S,
         limit: f64x8<S>,
-        slip: &mut [f64; LANES],
+        u: Vec3x8<S>,
+        slip_loss: &mut [f64; LANES],
     ) -> Vec3x8<S> {
         let k = f64x8::simd_from(simd, self.friction_spring);
         let stretch = Vec3x8::load(simd, &self.stretch);
         let tension_squared = k * k * stretch.dot(stretch);
         let slips = tension_squared.simd_gt(limit * limit);
-        let kept = slips.select(limit / tension_squared.sqrt(), f64x8::splat(simd, 1.0));
-        let held = stretch * kept;
+        let old = Vec3x8::load(simd, &self.old_stretch);
+        let held = Vec3x8::select(slips, slip(simd, old, stretch, limit / k, u), stretch);
         if !PREDICT {
-            self.kept = kept.into();
-            // the work of friction from the old to the new stretch, less what the spring stores
-            let lost = (Vec3x8::load(simd, &self.old_stretch) + held).dot(stretch - held);
+            self.held = held.store();
+            // the work of friction from the old to the new stretch, less what the spring stores; the flight before the first
+            // kick takes its work from that alone
+            let before = if self.is_first_kick { held } else { old };
+            let lost = (before + held).dot(stretch - held);
             let zero = f64x8::splat(simd, 0.0);
-            *slip = slips.select(k * 0.5 * lost, zero).into();
+            *slip_loss = slips.select(k * 0.5 * lost, zero).into();
         }
         held * (f64x8::splat(simd, 0.0) - k)
     }

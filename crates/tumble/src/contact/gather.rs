@@ -4,6 +4,7 @@ use super::chunk_contacts::{ChunkContacts, NO_CONTACT};
 use super::neighbour_list::NeighbourLists;
 use super::pair_forces::{PairForces, PairLosses};
 use super::pose::BodyPose;
+use super::since_kick::SinceKick;
 use crate::parallel::CHUNK;
 use crate::{BodyForces, BodyState, Model, Wrench};
 
@@ -20,9 +21,10 @@ pub(crate) fn update_poses(
     first: usize,
     poses: &mut [BodyPose],
     bodies: &[BodyState],
+    since_kick: &SinceKick,
 ) {
     for ((index, pose), state) in (first..).zip(poses).zip(bodies) {
-        *pose = pose.moved(model, index, state);
+        *pose = pose.moved(model, index, state, since_kick);
     }
 }
 

@@ -37,8 +37,10 @@ mod pair;
 mod pair_forces;
 mod patch_damping;
 pub(crate) mod pose;
+mod since_kick;
 pub(crate) mod tunnelling;
 pub(crate) mod wall;
 
 pub(crate) use self::body_contacts::BodyContacts;
 pub(crate) use self::pair::can_touch;
+pub(crate) use self::since_kick::SinceKick;

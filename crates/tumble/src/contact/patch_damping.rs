@@ -170,7 +170,7 @@ impl PairPatch {
         } else {
             power(&context.poses[self.second as usize], self.wrench.on_second())
         };
-        let approach = -(first + second) / self.sums.force * context.time_since_kick;
+        let approach = -(first + second) / self.sums.force * context.model.dt;
         touch_factor(self.sums.max_depth, approach)
     }
 }

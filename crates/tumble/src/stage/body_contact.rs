@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::wall_contact::wall_contact_again;
-use crate::contact::gather;
+use crate::contact::{SinceKick, gather};
 use crate::{Batch, BodyModel, Integrator, Model, Scratch, State, for_each_batch, parallel};
 
 /// Runs the stages `before` on all batches, computes the contact forces between bodies, and runs the stages `after`.
@@ -25,8 +25,9 @@ pub fn around_body_contact(
     }
     for_each_batch(model, state, scratch, |batch| {
         before(batch);
-        let Batch { model, first, bodies, poses, .. } = batch;
-        gather::update_poses(model, *first, poses, bodies);
+        let Batch { model, time, first, bodies, poses, .. } = batch;
+        let since_kick = SinceKick::at_kick(model, *time);
+        gather::update_poses(model, *first, poses, bodies, &since_kick);
     });
     contact_forces(model, state, scratch);
     for_each_batch(model, state, scratch, |batch| {
@@ -47,14 +48,15 @@ pub fn around_body_contact(
 fn contact_forces(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let h = model.dt;
     let contacts = &mut scratch.body_contacts;
-    contacts.update_neighbour_lists(model, state);
+    let since_kick = SinceKick::at_kick(model, state.time);
+    contacts.update_neighbour_lists(model, state, &since_kick);
     let is_damped = |body: &Arc<BodyModel>| body.pair_material.is_damped() || body.is_damped;
     if model.integrator != Integrator::Splitting || !model.bodies.iter().any(is_damped) {
-        contacts.evaluate::<false>(model, &state.pair_springs, h);
+        contacts.evaluate::<false>(model, &state.pair_springs, since_kick);
     } else if parallel::is_single_threaded() {
-        contacts.predict_and_evaluate(model, &state.pair_springs, &scratch.forces, h);
+        contacts.predict_and_evaluate(model, &state.pair_springs, &scratch.forces, since_kick);
     } else {
-        contacts.evaluate::<true>(model, &state.pair_springs, h);
+        contacts.evaluate::<true>(model, &state.pair_springs, since_kick);
         for_each_batch(model, state, scratch, |batch| {
             let Batch { model, first, poses, forces, contact_results, .. } = batch;
             gather::predict_velocities(model, *first, poses, forces, *contact_results, h);

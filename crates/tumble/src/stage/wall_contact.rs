@@ -1,6 +1,7 @@
 //! Line 9 of the basic system and beyond: contact of particles with walls.
 
 use crate::Batch;
+use crate::contact::SinceKick;
 use crate::contact::wall::{WallContactOutput, WallContacts, wall_contact_forces};
 use crate::kinematics::Kinematics;
 
@@ -10,6 +11,7 @@ use crate::kinematics::Kinematics;
 /// Where bodies touch each other, the kick is not known yet. The forces then serve to predict it, and [`wall_contact_again`]
 /// follows. Bodies of spheres meet walls in [`around_body_contact`](super::around_body_contact).
 pub fn wall_contact(batch: &mut Batch, h: f64) {
+    let since_kick = SinceKick::at_kick(batch.model, batch.time);
     let Batch {
         model, first, bodies, springs, may_touch, forces, next_springs, workspaces, ..
     } = batch;
@@ -28,11 +30,11 @@ pub fn wall_contact(batch: &mut Batch, h: f64) {
             next_springs.clear();
         } else if predicts {
             let contacts = &mut workspace.wall_contacts[index];
-            contacts.predict(model, body, state, springs, (forces, next_springs), h);
+            contacts.predict(model, body, state, springs, (forces, next_springs), (h, &since_kick));
         } else {
             let friction_contacts = &mut workspace.friction_contacts;
             let output = WallContactOutput { forces, next_springs, friction_contacts };
-            wall_contact_forces(model, body, state, springs, output, h);
+            wall_contact_forces(model, body, state, springs, output, h, &since_kick);
         }
     }
 }

@@ -117,7 +117,7 @@ impl<'a> LaneFiller<'a> {
         if count == 0 {
             return;
         }
-        let ContactContext { poses, time_since_kick, .. } = *self.context;
+        let ContactContext { poses, since_kick, .. } = *self.context;
         let ChunkContacts { lanes, lanes_used, input, .. } = &mut *self.contacts;
         let current = &mut lanes[*lanes_used];
         current.count = count;
@@ -131,7 +131,7 @@ impl<'a> LaneFiller<'a> {
         *lanes_used += 1;
         current.depth[count..].fill(0.0);
         if current.has_friction {
-            current.advance_friction(simd, input, poses, time_since_kick);
+            current.advance_friction(simd, input, poses, &since_kick);
         }
         if current.has_patch {
             current.add_to_patches(simd, forces, patches);
@@ -147,7 +147,7 @@ impl<'a> LaneFiller<'a> {
         pairs: &[Pair],
         is_last: bool,
     ) {
-        let ContactContext { poses, time_since_kick, .. } = *self.context;
+        let ContactContext { model, poses, .. } = *self.context;
         let open = if is_last { NO_PATCH } else { self.contacts.last_patch() };
         while self.contacts.lanes_evaluated < self.contacts.lanes_used {
             let index = self.contacts.lanes_evaluated;
@@ -160,7 +160,7 @@ impl<'a> LaneFiller<'a> {
                 }
                 current.add_patch_damping::<PREDICT>(self.context, forces, patches);
             }
-            current.add_forces::<S, PREDICT>(simd, poses, forces, losses, time_since_kick);
+            current.add_forces::<S, PREDICT>(simd, poses, forces, losses, model.dt);
             if !PREDICT {
                 self.contacts.store_springs(index, pairs);
             }

@@ -10,7 +10,8 @@ use fearless_simd::{Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::near_wall::{NearWall, WallPatch};
-use crate::contact::law::coulomb::dashpot_fraction;
+use crate::contact::SinceKick;
+use crate::contact::law::coulomb::{dashpot_fraction, slip};
 use crate::contact::law::linear::LinearSpringDashpot;
 use crate::contact::law::{NormalForce, NormalLaw};
 use crate::contact::patch_damping::touch_factors;
@@ -31,6 +32,8 @@ pub(crate) struct FrictionContacts {
     released: f64,
     /// Energy (J) that the latest evaluation loses to slip.
     slip_loss: f64,
+    /// Whether no kick comes before this one.
+    is_first_kick: bool,
 }
 
 /// Up to eight contacts with one wall, one per lane. Lanes without a contact have depth zero.
@@ -64,14 +67,15 @@ impl FrictionContacts {
         kinematics: &Kinematics,
         old: &[FrictionSpring],
         h: f64,
+        since_kick: &SinceKick,
     ) {
         self.contacts.clear();
         self.laws.clear();
-        self.released = 0.0;
+        (self.released, self.is_first_kick) = (0.0, since_kick.is_first);
         if !kinematics.body.has_friction && old.is_empty() {
             return;
         }
-        let mut springs = OldSprings { kinematics, model, old, released: 0.0, h };
+        let mut springs = OldSprings { kinematics, model, old, since_kick, released: 0.0, h };
         let particles = kinematics.body.shape.particles();
         for (index, (wall, law)) in model.walls.iter().zip(&kinematics.body.contacts).enumerate() {
             let near = NearWall::new(wall, kinematics).filter(|_| law.friction > 0.0);
@@ -98,9 +102,10 @@ impl FrictionContacts {
     pub fn add_forces(&mut self, model: &Model, kinematics: &Kinematics, forces: &mut BodyForces) {
         self.slip_loss = 0.0;
         let walls = self.contacts.chunk_by_mut(|a, b| a.wall == b.wall);
+        let is_first_kick = self.is_first_kick;
         for (lanes, &law) in walls.zip(&self.laws) {
             let normal = model.walls[lanes[0].wall as usize].normal;
-            let evaluation = WallEvaluation { kinematics, normal, law };
+            let evaluation = WallEvaluation { kinematics, normal, law, is_first_kick };
             dispatch!(kinematics.level, simd => evaluation.add_all(simd, lanes, forces, &mut self.slip_loss));
         }
         forces.slip_loss = self.released + self.slip_loss;
@@ -156,6 +161,7 @@ struct OldSprings<'a> {
     kinematics: &'a Kinematics<'a>,
     model: &'a Model,
     old: &'a [FrictionSpring],
+    since_kick: &'a SinceKick,
     released: f64,
     /// Time since the latest kick (s).
     h: f64,
@@ -186,6 +192,8 @@ impl OldSprings<'_> {
                         if let Some(old) = self.take(wall, slot, lanes.particle[lane]) {
                             set(&mut lanes.anchor, lane, old.anchor);
                             set(&mut lanes.old_stretch, lane, old.stretch);
+                        } else {
+                            self.set_anchor_at_touch(near.normal, lane, &mut lanes);
                         }
                     }
                     let particles = self.kinematics.body.shape.particles();
@@ -235,6 +243,17 @@ impl OldSprings<'_> {
         lanes.anchor = (Vec3x8::splat(simd, kinematics.position) + arm).store();
     }
 
+    /// Puts the anchor of a new contact to where the particle touched the wall, within the latest flight.
+    fn set_anchor_at_touch(&self, normal: DVec3, lane: usize, lanes: &mut WallContactLanes) {
+        let kinematics = self.kinematics;
+        let arm = vector(&lanes.arm, lane);
+        let u = kinematics.velocity + kinematics.angular_velocity.cross(arm);
+        let closing = -u.dot(normal);
+        let duration = self.since_kick.new_contact_duration(lanes.depth[lane], closing);
+        let anchor = vector(&lanes.anchor, lane) - (u + normal * closing) * duration;
+        set(&mut lanes.anchor, lane, anchor);
+    }
+
     /// The spring that this contact had; springs that sort before it are released.
     fn take(&mut self, wall: u32, slot: u32, particle: u32) -> Option<FrictionSpring> {
         while let Some((first, rest)) = self.old.split_first() {
@@ -273,6 +292,7 @@ struct WallEvaluation<'a> {
     kinematics: &'a Kinematics<'a>,
     normal: DVec3,
     law: ContactLaw,
+    is_first_kick: bool,
 }
 
 /// Weights of the particles of eight contacts; no multiplication where all particles weigh the same.
@@ -372,9 +392,12 @@ impl WallEvaluation<'_> {
         let stretch = (position - Vec3x8::load(simd, &lanes.anchor)).perpendicular_to(n);
         let tension = stretch.dot(stretch).sqrt() * law.friction_spring;
         let slips = tension.simd_gt(limit);
-        let kept = slips.select(limit / tension, f64x8::splat(simd, 1.0));
-        let held = stretch * kept;
-        let lost = (Vec3x8::load(simd, &lanes.old_stretch) + held).dot(stretch - held);
+        let (old, tangential) = (Vec3x8::load(simd, &lanes.old_stretch), u.perpendicular_to(n));
+        let longest = limit * (1.0 / law.friction_spring);
+        let held = Vec3x8::select(slips, slip(simd, old, stretch, longest, tangential), stretch);
+        // the flight before the first kick takes its work from that alone
+        let before = if self.is_first_kick { held } else { old };
+        let lost = (before + held).dot(stretch - held);
         sums.slip_loss += weights.scale(lost * (0.5 * law.friction_spring));
         let friction = held * f64x8::splat(simd, -law.friction_spring);
         let weighted_friction = weights.scale_vector(friction);
@@ -384,7 +407,7 @@ impl WallEvaluation<'_> {
         lanes.slips = slips.to_bitmask();
 
         // tangential dashpot, within what the spring leaves of the limit
-        let dashpot = u.perpendicular_to(n) * (touch * -law.friction_damping);
+        let dashpot = tangential * (touch * -law.friction_damping);
         let dashpot =
             weights.scale_vector(dashpot * dashpot_fraction(simd, friction, dashpot, limit));
         sums.dashpot += dashpot;

@@ -16,6 +16,7 @@ mod tests;
 
 use self::frictionless::NormalSprings;
 use self::near_wall::NearWall;
+use crate::contact::SinceKick;
 use crate::kinematics::Kinematics;
 use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, WallPlane};
 
@@ -46,10 +47,12 @@ pub(crate) fn wall_contact_forces(
     springs: &[FrictionSpring],
     output: WallContactOutput,
     h: f64,
+    since_kick: &SinceKick,
 ) {
     let WallContactOutput { forces, next_springs, friction_contacts } = output;
     next_springs.clear();
-    let first = first_evaluation(model, body, state, springs, forces, friction_contacts, h);
+    let time = (h, since_kick);
+    let first = first_evaluation(model, body, state, springs, forces, friction_contacts, time);
     let Some((kinematics, normal_springs)) = first else { return };
     if h != 0.0 && forces.max_depth > 0.0 && body.is_damped {
         // a second evaluation at the mid-kick velocities of the first makes dashpots second order
@@ -60,8 +63,8 @@ pub(crate) fn wall_contact_forces(
 }
 
 impl WallContacts {
-    /// The first of two evaluations: forces that serve to predict the velocities in the middle of a kick over the time `h` (s), for
-    /// bodies that also touch each other. `springs` are the friction springs of the body so far.
+    /// The first of two evaluations: forces that serve to predict the velocities in the middle of a kick, for bodies that also touch each other;
+    /// `time` is the length of the kick (s) and the flight before it. `springs` are the friction springs of the body so far.
     pub fn predict(
         &mut self,
         model: &Model,
@@ -69,10 +72,10 @@ impl WallContacts {
         state: &BodyState,
         springs: &[FrictionSpring],
         (forces, next_springs): (&mut BodyForces, &mut Vec<FrictionSpring>),
-        h: f64,
+        time: (f64, &SinceKick),
     ) {
         next_springs.clear();
-        let first = first_evaluation(model, body, state, springs, forces, &mut self.friction, h);
+        let first = first_evaluation(model, body, state, springs, forces, &mut self.friction, time);
         if let Some((kinematics, normal_springs)) = first {
             self.friction.store_springs(&kinematics, next_springs);
             self.normal_springs = normal_springs;
@@ -102,7 +105,7 @@ fn first_evaluation<'a>(
     springs: &[FrictionSpring],
     forces: &mut BodyForces,
     friction_contacts: &mut FrictionContacts,
-    h: f64,
+    (h, since_kick): (f64, &SinceKick),
 ) -> Option<(Kinematics<'a>, NormalSprings)> {
     forces.clear_contact();
     let is_far = |wall: &WallPlane| wall.depth(state.position) < -body.bounding_radius();
@@ -113,7 +116,7 @@ fn first_evaluation<'a>(
     // over the time between two kicks a body at rest has no velocity, so that the prediction leaves it at rest
     let mid_flight = kinematics.in_mid_flight(model, state, h);
     let normal_springs = NormalSprings::new(model, &mid_flight, h);
-    friction_contacts.detect(model, &mid_flight, springs, h);
+    friction_contacts.detect(model, &mid_flight, springs, h, since_kick);
     evaluate(model, &mid_flight, &normal_springs, forces, friction_contacts);
     Some((kinematics, normal_springs))
 }

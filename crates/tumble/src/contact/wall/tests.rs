@@ -45,7 +45,8 @@ fn wall_contact_has_the_same_bits_at_every_simd_level() {
             let (mut forces, mut springs) = (BodyForces::default(), Vec::new());
             let mut contacts = FrictionContacts::default();
             let normal_springs = NormalSprings::new(model, &kinematics, model.dt);
-            contacts.detect(model, &kinematics, &state.springs[0], model.dt);
+            let since_kick = SinceKick::none(state.time);
+            contacts.detect(model, &kinematics, &state.springs[0], model.dt, &since_kick);
             evaluate(model, &kinematics, &normal_springs, &mut forces, &mut contacts);
             contacts.store_springs(&kinematics, &mut springs);
             (forces, springs, elastic_energy(model, &kinematics, &state.springs[0]))
