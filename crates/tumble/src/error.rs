@@ -34,6 +34,17 @@ pub enum BuildError {
         /// The depth of the centre of mass behind the wall (m).
         depth: f64,
     },
+    /// A body starts deep in a wall.
+    InWall {
+        /// Name of the body.
+        body: String,
+        /// The wall's normal.
+        normal: [f64; 3],
+        /// The depth of the deepest particle or sphere (m).
+        depth: f64,
+        /// The position at which the body would only touch its walls.
+        position: [f64; 3],
+    },
     /// The time step is above the critical one.
     Unstable {
         /// The step (s).
@@ -79,6 +90,11 @@ impl std::fmt::Display for BuildError {
                 f,
                 "body \"{body}\" starts outside: its centre of mass lies {depth:.3e} m behind the wall \
                  with normal ({x}, {y}, {z}); move its `position` to the free side"
+            ),
+            Self::InWall { body, normal: [nx, ny, nz], depth, position: [x, y, z] } => write!(
+                f,
+                "body \"{body}\" starts {depth:.3e} m in the wall with normal ({nx}, {ny}, {nz}), which would throw it out; \
+                 with `position` at ({x}, {y}, {z}) it would touch, or have it pushed out with `overlaps = \"push\"`"
             ),
             Self::Unstable { dt, critical, body } => write!(
                 f,
