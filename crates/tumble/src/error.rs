@@ -1,6 +1,6 @@
 //! Errors of building and stepping a world.
 
-use crate::SurfaceError;
+use crate::{BodyDepth, SurfaceError};
 
 /// Why a world cannot be built.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,11 +154,16 @@ pub struct StepError {
     pub other: Option<String>,
     /// A suggested time step (s), if there is one.
     pub dt: Option<f64>,
+    /// The depth of two bodies in each other, if that is what is wrong.
+    pub body_depth: Option<Box<BodyDepth>>,
 }
 
 impl std::fmt::Display for StepError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { step, time, body, particle, quantity, value, other, dt } = self;
+        let Self { step, time, body, particle, quantity, value, other, dt, body_depth } = self;
+        if let Some(depth) = body_depth {
+            return write!(f, "the simulation diverged at step {step} (t = {time} s): {depth}");
+        }
         let whose = match particle {
             Some(particle) => format!("particle {particle} of body \"{body}\""),
             None => format!("body \"{body}\""),
