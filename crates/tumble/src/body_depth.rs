@@ -225,7 +225,7 @@ mod tests {
     fn thin_parts_that_are_passed_are_a_warning() {
         let block = Primitive::Box { size: DVec3::splat(1.0), divisions: 4 }.mesh().unwrap();
         let blade =
-            Primitive::Box { size: DVec3::new(0.3, 0.02, 0.3), divisions: 1 }.mesh().unwrap();
+            Primitive::Box { size: DVec3::new(0.6, 0.02, 0.6), divisions: 1 }.mesh().unwrap();
         let mut both = block.clone();
         let first = block.vertices.len() as u32;
         both.vertices.extend(blade.vertices.iter().map(|&v| v + DVec3::X * 2.0));

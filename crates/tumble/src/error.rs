@@ -151,7 +151,7 @@ pub struct StepError {
     /// Its value.
     pub value: f64,
     /// Name of the other body, if the body could pass through it.
-    pub other: Option<String>,
+    pub other: Option<Box<str>>,
     /// A suggested time step (s), if there is one.
     pub dt: Option<f64>,
     /// The depth of two bodies in each other, if that is what is wrong.

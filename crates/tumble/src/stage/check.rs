@@ -67,7 +67,7 @@ fn depth_error(model: &Model, state: &State, deep: &DeepContact) -> StepError {
         particle: None,
         quantity: "depth",
         value: found.depth,
-        other: Some(found.second.clone()),
+        other: Some(found.second.as_str().into()),
         dt: found.dt,
         body_depth: Some(Box::new(found)),
     }
@@ -83,7 +83,7 @@ fn tunnelling_error(model: &Model, state: &State, risk: &TunnellingRisk) -> Step
         particle: Some(risk.particle as usize),
         quantity: "displacement",
         value: risk.displacement,
-        other: Some(name(risk.other)),
+        other: Some(name(risk.other).into()),
         dt: Some(0.5 * model.dt * risk.limit / risk.displacement),
         body_depth: None,
     }
