@@ -43,7 +43,8 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
         ("animation", folder.path().join("motion.html").display().to_string()),
     ];
     rows.extend(finished.notes.iter().map(|note| ("note", (*note).to_owned())));
-    rows.extend(warnings(s, relative).into_iter().map(|warning| ("warning", warning)));
+    let warnings = warnings(s, relative).into_iter().chain(finished.warnings.iter().cloned());
+    rows.extend(warnings.map(|warning| ("warning", warning)));
     columns(&rows)
 }
 

@@ -38,6 +38,9 @@ pub struct RunArgs {
 
 pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let loaded = load(args)?;
+    for load in tumble::static_loads(loaded.world.model(), loaded.world.state()) {
+        eprintln!("warning: {load}");
+    }
     let name = loaded.scene.name.clone();
     let folder = match &args.out {
         Some(path) => RunFolder::create(path, args.force),

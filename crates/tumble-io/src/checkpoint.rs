@@ -28,7 +28,9 @@ use bytes::Bytes;
 /// The first bytes of every checkpoint; a transfer in text mode would change them.
 pub const MAGIC: [u8; 12] = *b"\x89TUMBLE\r\n\x1a\n\0";
 /// The version of the format that is written.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
+/// The oldest version that is read: its bodies have no `position_compensation`.
+pub const OLDEST_VERSION: u32 = 3;
 /// Bytes before the first section.
 const HEADER_LENGTH: usize = 12 + 4 + 8;
 /// Bytes after the last section.
@@ -88,7 +90,7 @@ impl std::fmt::Display for CheckpointError {
             Self::Damaged => write!(f, "is damaged: its checksum does not match its bytes"),
             Self::Version(version) => write!(
                 f,
-                "is of format version {version}, but this program reads version {VERSION}: \
+                "is of format version {version}, but this program reads versions {OLDEST_VERSION} to {VERSION}: \
                  resume it with the program that wrote it"
             ),
             Self::Invalid(part) => write!(f, "is not a checkpoint of a run: {part} is invalid"),
@@ -178,7 +180,7 @@ pub fn parse_checkpoint(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     if !is_intact {
         return Err(if length > found { truncated } else { CheckpointError::Damaged });
     }
-    if version != VERSION {
+    if !(OLDEST_VERSION..=VERSION).contains(&version) {
         return Err(CheckpointError::Version(version));
     }
     if length != found {
@@ -194,7 +196,8 @@ pub fn parse_checkpoint(bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
     });
     let (force, energy_start) =
         conditions.ok_or(CheckpointError::Invalid("the energy at the start"))?;
-    let state = rest.section(b"STAT").and_then(state::decode).filter(|_| rest.is_empty());
+    let state = rest.section(b"STAT").and_then(|bytes| state::decode(bytes, version));
+    let state = state.filter(|_| rest.is_empty());
     let state = state.ok_or(CheckpointError::Invalid("the state"))?;
     Ok(Checkpoint { name, scene, force, energy_start, state })
 }

@@ -21,7 +21,7 @@ use crate::run::{
     CHECKPOINT_FILE, CsvReader, ENERGY_FILE, RowError, SCENE_FILE, TRAJECTORY_FILE,
     TRAJECTORY_HEADER, energy_header, parse_energy, parse_trajectory,
 };
-use crate::scene::{LoadOptions, Loaded, Scene, SceneError, load_file};
+use crate::scene::{LoadOptions, Loaded, Scene, SceneError, load_recorded_file};
 
 /// Advice for an interrupted run.
 const RESUME_ADVICE: &str = "`tumble resume` on the folder completes an interrupted run";
@@ -149,7 +149,7 @@ fn load_scene(folder: &Path) -> Result<Loaded, ReplayError> {
     }
     // the run accepted its dt, possibly with --force
     let options = LoadOptions { sets: Vec::new(), force: true };
-    load_file(&path, &options).map_err(ReplayError::Scene)
+    load_recorded_file(&path, &options).map_err(ReplayError::Scene)
 }
 
 /// Name of the scene, from the checkpoint if there is one, otherwise the name of the folder.

@@ -66,6 +66,28 @@ fn a_checkpoint_is_read_back_unchanged() {
     );
 }
 
+/// Version 3 lacks the compensation of the position, after the position of each body.
+#[test]
+fn a_checkpoint_of_version_3_is_read_with_no_compensation_of_the_position() {
+    let mut written = checkpoint().clone();
+    assert_ne!(written.state.bodies[0].position_compensation, DVec3::ZERO);
+    written.state.bodies[0].position_compensation = DVec3::ZERO;
+    let mut bytes = written.to_bytes();
+    let section = bytes.windows(4).position(|name| name == b"STAT").unwrap();
+    // name, length, then step, time, number of bodies and the position
+    let compensation = section + 4 + 8 + 3 * 8 + 3 * 8;
+    bytes.drain(compensation..compensation + 3 * 8);
+    let shorten = |bytes: &mut Vec<u8>, at: usize| {
+        let length = u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) - 3 * 8;
+        bytes[at..at + 8].copy_from_slice(&length.to_le_bytes());
+    };
+    shorten(&mut bytes, MAGIC.len() + 4);
+    shorten(&mut bytes, section + 4);
+    bytes[MAGIC.len()..][..4].copy_from_slice(&3u32.to_le_bytes());
+    let read = parse_checkpoint(&with_checksum(bytes)).unwrap();
+    assert_eq!(read, written);
+}
+
 #[test]
 fn a_resumed_world_is_bit_identical_to_an_uninterrupted_one() {
     let mut uninterrupted = load(SCENE).world;
@@ -165,7 +187,16 @@ fn other_files_are_rejected_with_the_reason() {
     let mut later = checkpoint().to_bytes();
     later[MAGIC.len()..][..4].copy_from_slice(&(VERSION + 6).to_le_bytes());
     assert_error(&later, "damaged");
-    assert_error(&with_checksum(later), "format version 9, but this program reads version 3");
+    assert_error(
+        &with_checksum(later),
+        "format version 10, but this program reads versions 3 to 4",
+    );
+    let mut earlier = checkpoint().to_bytes();
+    earlier[MAGIC.len()..][..4].copy_from_slice(&2u32.to_le_bytes());
+    assert_error(
+        &with_checksum(earlier),
+        "format version 2, but this program reads versions 3 to 4",
+    );
     let folder = tempfile::tempdir().unwrap();
     assert!(matches!(read_checkpoint(folder.path()), Err(CheckpointError::NotAFile)));
     let missing = read_checkpoint(&folder.path().join("no")).unwrap_err();

@@ -6,10 +6,13 @@ mod checks;
 mod description;
 mod initial_state;
 mod model_cache;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod wall_start_tests;
 mod weighted_shapes;
 
 use self::body_model::Shared;
-use self::checks::{duplicate_names, overlaps};
+use self::checks::{behind_walls, duplicate_names, overlaps};
 use crate::{
     BuildError, BuildErrors, MaterialOverride, Model, Overlaps, State, Surface, WallPlane, World,
     critical_dt,
@@ -48,7 +51,7 @@ impl WorldBuilder {
         let (mut state, mut shared) = (State::default(), Shared::default());
         for (index, body) in self.bodies.iter().enumerate() {
             let name = body.name.clone().unwrap_or_else(|| format!("body {index}"));
-            match self.model_and_state(&model, &name, body, &mut shared) {
+            match self.model_and_state(&name, body, &mut shared) {
                 Ok((body_model, body_state)) => {
                     model.bodies.push(body_model);
                     model.names.push(name);
@@ -59,9 +62,11 @@ impl WorldBuilder {
             }
         }
         errors.extend(duplicate_names(&model));
-        if errors.is_empty() && model.has_body_contact && self.overlaps == Overlaps::Push {
+        let has_contact = model.has_body_contact || !model.walls.is_empty();
+        if errors.is_empty() && has_contact && self.overlaps == Overlaps::Push {
             crate::contact::initial_overlap::separate(&model, &mut state);
         }
+        errors.extend(behind_walls(&model, &state, self.accept_start_in_walls));
         errors.extend(overlaps(&model, &state));
         errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && !self.force).map(
             |critical| BuildError::Unstable {

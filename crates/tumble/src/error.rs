@@ -1,6 +1,6 @@
 //! Errors of building and stepping a world.
 
-use crate::SurfaceError;
+use crate::{BodyDepth, SurfaceError};
 
 /// Why a world cannot be built.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,6 +33,17 @@ pub enum BuildError {
         normal: [f64; 3],
         /// The depth of the centre of mass behind the wall (m).
         depth: f64,
+    },
+    /// A body starts deep in a wall.
+    InWall {
+        /// Name of the body.
+        body: String,
+        /// The wall's normal.
+        normal: [f64; 3],
+        /// The depth of the deepest particle or sphere (m).
+        depth: f64,
+        /// The position at which the body would only touch its walls.
+        position: [f64; 3],
     },
     /// The time step is above the critical one.
     Unstable {
@@ -79,6 +90,11 @@ impl std::fmt::Display for BuildError {
                 f,
                 "body \"{body}\" starts outside: its centre of mass lies {depth:.3e} m behind the wall \
                  with normal ({x}, {y}, {z}); move its `position` to the free side"
+            ),
+            Self::InWall { body, normal: [nx, ny, nz], depth, position: [x, y, z] } => write!(
+                f,
+                "body \"{body}\" starts {depth:.3e} m in the wall with normal ({nx}, {ny}, {nz}), which would throw it out; \
+                 with `position` at ({x}, {y}, {z}) it would touch, or have it pushed out with `overlaps = \"push\"`"
             ),
             Self::Unstable { dt, critical, body } => write!(
                 f,
@@ -135,14 +151,19 @@ pub struct StepError {
     /// Its value.
     pub value: f64,
     /// Name of the other body, if the body could pass through it.
-    pub other: Option<String>,
+    pub other: Option<Box<str>>,
     /// A suggested time step (s), if there is one.
     pub dt: Option<f64>,
+    /// The depth of two bodies in each other, if that is what is wrong.
+    pub body_depth: Option<Box<BodyDepth>>,
 }
 
 impl std::fmt::Display for StepError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { step, time, body, particle, quantity, value, other, dt } = self;
+        let Self { step, time, body, particle, quantity, value, other, dt, body_depth } = self;
+        if let Some(depth) = body_depth {
+            return write!(f, "the simulation diverged at step {step} (t = {time} s): {depth}");
+        }
         let whose = match particle {
             Some(particle) => format!("particle {particle} of body \"{body}\""),
             None => format!("body \"{body}\""),

@@ -7,7 +7,7 @@ use crate::{PairSpring, State};
 impl State {
     /// The first 16 bytes of the SHA-256 of the state, in hexadecimal.
     ///
-    /// The state is hashed as little-endian numbers: step, time, then for each body position, velocity,
+    /// The state is hashed as little-endian numbers: step, time, then for each body position, `position_compensation`, velocity,
     /// orientation (w, x, y, z), `orientation_compensation`, angular momentum, `energy_excess` and friction springs, then
     /// the friction springs between bodies, then the totals (with its work unless that is zero). Two states with
     /// equal hashes are equal bit for bit.
@@ -18,6 +18,7 @@ impl State {
         put(self.time);
         for (body, springs) in self.bodies.iter().zip(&self.springs) {
             body.position.to_array().into_iter().for_each(&mut put);
+            body.position_compensation.to_array().into_iter().for_each(&mut put);
             body.velocity.to_array().into_iter().for_each(&mut put);
             for q in [body.orientation, body.orientation_compensation] {
                 [q.w, q.x, q.y, q.z].into_iter().for_each(&mut put);

@@ -36,6 +36,7 @@
 #![warn(missing_debug_implementations)]
 
 mod batch;
+mod body_depth;
 mod builder;
 mod contact;
 mod contact_points;
@@ -59,6 +60,7 @@ mod shape;
 mod stability;
 pub mod stage;
 mod state;
+mod static_load;
 pub mod step;
 mod surface;
 mod wall;
@@ -67,6 +69,7 @@ mod world;
 mod wrench;
 
 pub use batch::{Batch, for_each_batch};
+pub use body_depth::BodyDepth;
 pub use builder::{Body, WorldBuilder};
 pub use contact_points::ContactPoints;
 pub use contact_time::{ContactTime, contact_time};
@@ -91,6 +94,7 @@ pub use shape::{
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::MouseSpring;
 pub use state::{BodyState, ContactKind, FrictionSpring, PairSpring, RunTotals, State};
+pub use static_load::{StaticLoad, static_loads};
 pub use surface::{Overlaps, Surface};
 pub use wall::{WallBox, WallPlane};
 pub use world::{BodyView, World};

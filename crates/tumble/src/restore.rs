@@ -103,6 +103,7 @@ impl State {
             let q = state.orientation;
             let values = [
                 ("position", state.position.is_finite()),
+                ("position_compensation", state.position_compensation.is_finite()),
                 ("velocity", state.velocity.is_finite()),
                 ("orientation", (q.length() - 1.0).abs() <= 1e-6),
                 ("orientation_compensation", state.orientation_compensation.is_finite()),

@@ -25,6 +25,9 @@ pub struct State {
 pub struct BodyState {
     /// Centre of mass x (m).
     pub position: DVec3,
+    /// Compensation for the rounding error of x (m): far from the origin the displacement of a step has fewer digits than x
+    /// can hold, and a slow body would not move at all.
+    pub position_compensation: DVec3,
     /// Velocity v of the centre of mass (m/s).
     pub velocity: DVec3,
     /// Orientation q, a unit quaternion that rotates body axes to world axes.
@@ -44,12 +47,26 @@ impl Default for BodyState {
     fn default() -> Self {
         Self {
             position: DVec3::ZERO,
+            position_compensation: DVec3::ZERO,
             velocity: DVec3::ZERO,
             orientation: DQuat::IDENTITY,
             orientation_compensation: NO_COMPENSATION,
             angular_momentum: DVec3::ZERO,
             energy_excess: 0.0,
         }
+    }
+}
+
+impl BodyState {
+    /// x ← x + `displacement` (m), as a compensated sum: the rounding error goes into `position_compensation`
+    /// (2Sum: D. E. Knuth, *The Art of Computer Programming* 2, 4.2.2).
+    #[inline]
+    pub(crate) fn move_by(&mut self, displacement: DVec3) {
+        let (x, d) = (self.position, displacement + self.position_compensation);
+        let sum = x + d;
+        let d_of_sum = sum - x;
+        self.position_compensation = (x - (sum - d_of_sum)) + (d - d_of_sum);
+        self.position = sum;
     }
 }
 
@@ -145,5 +162,23 @@ impl std::ops::AddAssign for RunTotals {
         self.work += more.work;
         self.max_depth = self.max_depth.max(more.max_depth);
         self.evaluations += more.evaluations;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slow_body_far_from_the_origin_moves() {
+        // a tenth of what doubles resolve there
+        let (start, displacement) = (DVec3::new(1e6, -1e6, 3.0), DVec3::new(1e-11, -1e-11, 1e-11));
+        assert_eq!(start.x + displacement.x, start.x);
+        let mut state = BodyState { position: start, ..BodyState::default() };
+        for _ in 0..100_000 {
+            state.move_by(displacement);
+        }
+        let moved = state.position - start + state.position_compensation;
+        assert!((moved - DVec3::new(1e-6, -1e-6, 1e-6)).length() < 1e-15, "{moved}");
     }
 }

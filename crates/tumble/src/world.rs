@@ -6,8 +6,8 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::stage::{self, MouseSpring};
 use crate::{
-    BodyForces, BodyModel, BodyState, Energy, Model, PenetrationDepths, Scratch, State, StateError,
-    StepError, Wrench, step::step,
+    BodyDepth, BodyForces, BodyModel, BodyState, Energy, Model, PenetrationDepths, Scratch, State,
+    StateError, StepError, Wrench, step::step,
 };
 
 /// A simulation: a model and its state, advanced step by step.
@@ -145,6 +145,13 @@ impl World {
             &self.state,
             self.scratch.body_contacts.for_query(),
         )
+    }
+
+    /// The contact between two bodies that was deepest so far, relative to what they would have to pass through, if they
+    /// were deep in each other. [`World::restore`] and [`World::clear_scratch`] forget it.
+    pub fn deepest_body_contact(&self) -> Option<BodyDepth> {
+        let deepest = self.scratch.body_contacts.deepest_contact()?;
+        Some(BodyDepth::new(&self.model, &self.state, deepest))
     }
 
     /// The energy ledger now.

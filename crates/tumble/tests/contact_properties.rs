@@ -89,6 +89,7 @@ impl Scene {
             .integrator(self.integrator)
             .energy_tolerance(self.tolerance)
             .dt(dt * units.time)
+            .accept_start_in_walls(true)
             .force(true);
         walls.fold(builder, |b, w| b.wall(w)).body(body).build().unwrap()
     }

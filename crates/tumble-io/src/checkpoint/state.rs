@@ -3,8 +3,8 @@
 //! In this order:
 //!
 //! - step, time, number of bodies;
-//! - for each body: position, velocity, orientation (w, x, y, z), compensation of the orientation
-//!   (w, x, y, z), angular momentum, energy excess;
+//! - for each body: position, compensation of the position (absent in version 3), velocity, orientation (w, x, y, z),
+//!   compensation of the orientation (w, x, y, z), angular momentum, energy excess;
 //! - for each body: number of wall friction springs, and for each spring: wall, particle, anchor, stretch;
 //! - number of friction springs between bodies, and for each spring: first body, second body, kind of
 //!   contact (one byte), particle, other, stretch;
@@ -12,10 +12,13 @@
 
 use tumble::{BodyState, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, RunTotals, State};
 
+use super::OLDEST_VERSION;
 use super::bytes::Bytes;
 
 /// Bytes of a body.
-const BODY_LENGTH: usize = 18 * 8;
+const BODY_LENGTH: usize = 21 * 8;
+/// The same in version 3.
+const OLD_BODY_LENGTH: usize = 18 * 8;
 /// Bytes of a wall friction spring.
 const SPRING_LENGTH: usize = 4 + 4 + 6 * 8;
 /// Bytes of a friction spring between bodies.
@@ -41,6 +44,7 @@ pub(super) fn encode(state: &State) -> Vec<u8> {
     for body in bodies {
         let BodyState {
             position,
+            position_compensation,
             velocity,
             orientation,
             orientation_compensation,
@@ -48,6 +52,7 @@ pub(super) fn encode(state: &State) -> Vec<u8> {
             energy_excess,
         } = body;
         push_numbers(&mut out, position.to_array());
+        push_numbers(&mut out, position_compensation.to_array());
         push_numbers(&mut out, velocity.to_array());
         for q in [orientation, orientation_compensation] {
             push_numbers(&mut out, [q.w, q.x, q.y, q.z]);
@@ -83,11 +88,12 @@ fn push_numbers<const N: usize>(out: &mut Vec<u8>, numbers: [f64; N]) {
     out.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
 }
 
-/// Decodes a state; `None` if the bytes are invalid or are followed by others.
-pub(super) fn decode(mut bytes: Bytes) -> Option<State> {
+/// Decodes a state of the format `version`; `None` if the bytes are invalid or are followed by others.
+pub(super) fn decode(mut bytes: Bytes, version: u32) -> Option<State> {
+    let is_old = version == OLDEST_VERSION;
     let (step, time) = (bytes.u64()?, bytes.f64()?);
-    let count = bytes.count(BODY_LENGTH + 8)?;
-    let bodies = (0..count).map(|_| body(&mut bytes)).collect::<Option<_>>()?;
+    let count = bytes.count(if is_old { OLD_BODY_LENGTH } else { BODY_LENGTH } + 8)?;
+    let bodies = (0..count).map(|_| body(&mut bytes, is_old)).collect::<Option<_>>()?;
     let springs = (0..count).map(|_| springs(&mut bytes)).collect::<Option<_>>()?;
     let pair_springs = pair_springs(&mut bytes)?;
     let totals = RunTotals {
@@ -101,9 +107,10 @@ pub(super) fn decode(mut bytes: Bytes) -> Option<State> {
     bytes.is_empty().then_some(State { step, time, bodies, springs, pair_springs, totals })
 }
 
-fn body(bytes: &mut Bytes) -> Option<BodyState> {
+fn body(bytes: &mut Bytes, is_old: bool) -> Option<BodyState> {
     Some(BodyState {
         position: vector(bytes)?,
+        position_compensation: if is_old { DVec3::ZERO } else { vector(bytes)? },
         velocity: vector(bytes)?,
         orientation: quaternion(bytes)?,
         orientation_compensation: quaternion(bytes)?,

@@ -25,4 +25,6 @@ pub struct FinishedRun {
     pub steps_here: u64,
     /// Properties of the scene that the user may not expect.
     pub notes: Vec<&'static str>,
+    /// Reasons not to trust the results that were found while it ran.
+    pub warnings: Vec<String>,
 }

@@ -10,7 +10,7 @@ use super::recorder::Recorder;
 use super::resume_error::ResumeError;
 use super::run_loop::RunLoop;
 use crate::checkpoint::{Checkpoint, read_checkpoint};
-use crate::scene::{LoadOptions, Loaded, Source, load_text};
+use crate::scene::{LoadOptions, Loaded, Source, load_recorded};
 
 /// A run that is ready to be resumed.
 #[derive(Debug)]
@@ -121,7 +121,7 @@ fn load(
         Source { name: format!("the scene in {}", path.display()), text: checkpoint.scene };
     let sets = duration.iter().map(|seconds| format!("duration={seconds}")).collect();
     let options = LoadOptions { sets, force: checkpoint.force };
-    let mut loaded = load_text(&checkpoint.name, source, Path::new("."), &options)
+    let mut loaded = load_recorded(&checkpoint.name, source, Path::new("."), &options)
         .map_err(ResumeError::Scene)?;
     loaded
         .world

@@ -75,7 +75,9 @@ impl<'a> RunLoop<'a> {
         let mut json = serde_json::to_string_pretty(&summary).unwrap_or_default();
         json.push('\n');
         folder.write_file(SUMMARY_FILE, json.as_bytes())?;
-        Ok(FinishedRun { summary, energy, steps_here, notes: notes(&self.scene) })
+        let warnings = self.world.deepest_body_contact().map(|deepest| deepest.warning());
+        let warnings = warnings.into_iter().collect();
+        Ok(FinishedRun { summary, energy, steps_here, notes: notes(&self.scene), warnings })
     }
 
     fn step_to_end(&mut self, watch: &mut dyn FnMut(Progress) -> bool) -> Result<(), RunError> {

@@ -41,6 +41,22 @@ pub struct LoadOptions {
 /// # Errors
 /// [`SceneError`] holds all problems.
 pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
+    read_and_load(path, options, false)
+}
+
+/// As [`load_file`], for the scene of a run that has begun: how it started is accepted.
+///
+/// # Errors
+/// [`SceneError`] holds all problems.
+pub(crate) fn load_recorded_file(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneError> {
+    read_and_load(path, options, true)
+}
+
+fn read_and_load(
+    path: &Path,
+    options: &LoadOptions,
+    is_recorded: bool,
+) -> Result<Loaded, SceneError> {
     let file = path.display().to_string();
     let text = read_text(path).map_err(|message| {
         let problem = Problem::new(Place { source: usize::MAX, span: 0..0 }, "", message);
@@ -48,7 +64,7 @@ pub fn load_file(path: &Path, options: &LoadOptions) -> Result<Loaded, SceneErro
     })?;
     let name = path.file_stem().map_or_else(|| file.clone(), |s| s.to_string_lossy().into_owned());
     let folder = path.parent().unwrap_or(Path::new("."));
-    load_text(&name, Source { name: file, text }, folder, options)
+    load(&name, Source { name: file, text }, folder, options, is_recorded)
 }
 
 /// Reads the built-in scene `name`; `None` if it does not exist.
@@ -100,6 +116,29 @@ pub fn load_text(
     folder: &Path,
     options: &LoadOptions,
 ) -> Result<Loaded, SceneError> {
+    load(name, source, folder, options, false)
+}
+
+/// As [`load_text`], for the scene of a run that has begun: how it started is accepted.
+///
+/// # Errors
+/// [`SceneError`] holds all problems.
+pub(crate) fn load_recorded(
+    name: &str,
+    source: Source,
+    folder: &Path,
+    options: &LoadOptions,
+) -> Result<Loaded, SceneError> {
+    load(name, source, folder, options, true)
+}
+
+fn load(
+    name: &str,
+    source: Source,
+    folder: &Path,
+    options: &LoadOptions,
+    is_recorded: bool,
+) -> Result<Loaded, SceneError> {
     let (mut root, syntax) = tree::parse(&source.text, 0);
     let mut sources = vec![source];
     // after a syntax error the rest of the tree is unreliable
@@ -116,7 +155,7 @@ pub fn load_text(
     }
     let (mut scene, is_valid) = read::scene(&root, name.to_owned(), &problems);
     scene.force = options.force;
-    let world = world(&mut scene, &is_valid, &root, folder, &problems);
+    let world = world((&mut scene, is_recorded), &is_valid, &root, folder, &problems);
     let problems = problems.into_inner();
     match world {
         Some(world) if problems.is_empty() => Ok(Loaded { scene, world }),
@@ -125,9 +164,10 @@ pub fn load_text(
 }
 
 /// Builds the world; `None` if there is a problem, now or before. Meshes are read in either case, so that their problems are reported
-/// together with all others. `is_valid` tells which bodies were read without a problem.
+/// together with all others. `is_valid` tells which bodies were read without a problem, `is_recorded` that the scene is that of a run
+/// that has begun.
 fn world(
-    scene: &mut Scene,
+    (scene, is_recorded): (&mut Scene, bool),
     is_valid: &[bool],
     root: &Node,
     folder: &Path,
@@ -149,6 +189,7 @@ fn world(
         .energy_tolerance(scene.energy_tolerance)
         .force(scene.force)
         .overlaps(scene.overlaps)
+        .accept_start_in_walls(is_recorded)
         .material(scene.collision);
     for (wall, material) in scene.all_walls() {
         builder = builder.wall_with_material(wall, material);
@@ -263,7 +304,9 @@ fn origin(
     let (body, key) = match error {
         BuildError::World { quantity, .. } => (None, *quantity),
         BuildError::Body { body, quantity, .. } => (Some(body), *quantity),
-        BuildError::Outside { body, .. } => (Some(body), "position"),
+        BuildError::Outside { body, .. } | BuildError::InWall { body, .. } => {
+            (Some(body), "position")
+        }
         BuildError::SameName { body } => (Some(body), "name"),
         BuildError::Surface { body, .. } => (Some(body), "surface"),
         BuildError::Overlap { second, .. } => (Some(second), "position"),

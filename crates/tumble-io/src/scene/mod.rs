@@ -38,6 +38,7 @@ pub use description::{
     BodyScene, BoxScene, Copies, Geometry, MassScene, MotionScene, OutputScene, Scene, WallScene,
 };
 pub use load::{LoadOptions, Loaded, load_builtin, load_file, load_text};
+pub(crate) use load::{load_recorded, load_recorded_file};
 pub use place::Source;
 pub use problem::SceneError;
 pub use reader::nearest;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::body::{Body, Mass};
-use super::checks::{check_body, check_inside};
+use super::checks::check_body;
 use super::description::WorldBuilder;
 use super::initial_state::body_state;
 use super::model_cache::ModelCache;
@@ -13,8 +13,8 @@ use super::weighted_shapes::WeightedShapes;
 use crate::contact_points::SharedContactPoints;
 use crate::surface::Solids;
 use crate::{
-    BodyModel, BodyState, BuildError, ContactLaw, DragModes, Material, MaterialOverride, Model,
-    Motion, PairMaterial, Shape, Surface,
+    BodyModel, BodyState, BuildError, ContactLaw, DragModes, Material, MaterialOverride, Motion,
+    PairMaterial, Shape, Surface,
 };
 
 /// Data shared by several bodies.
@@ -30,7 +30,6 @@ impl WorldBuilder {
     /// The model and the initial state of a body.
     pub(super) fn model_and_state<'a>(
         &self,
-        model: &Model,
         name: &str,
         body: &'a Body,
         shared: &mut Shared<'a>,
@@ -44,7 +43,6 @@ impl WorldBuilder {
             }
         };
         let body_state = body_state(&body_model, name, body)?;
-        check_inside(model, &body_model, name, &body_state)?;
         Ok((body_model, body_state))
     }
 

@@ -1,7 +1,11 @@
 //! Checks of descriptions and of initial states.
 
+use std::sync::Arc;
+
 use super::body::Body;
 use super::description::WorldBuilder;
+use crate::contact::wall::{WallDepth, depth_in_wall};
+use crate::kinematics::Kinematics;
 use crate::{
     BodyModel, BodyState, BuildError, Damping, Integrator, Material, Model, Motion, State, Surface,
 };
@@ -93,23 +97,55 @@ fn check_material(
     }
 }
 
-/// Refuses a body whose centre of mass starts behind a wall, deeper than ten times the depth at
-/// which the springs of its particles carry its weight.
-pub(super) fn check_inside(
-    model: &Model,
-    body: &BodyModel,
-    name: &str,
-    state: &BodyState,
-) -> Result<(), BuildError> {
-    for (wall, law) in model.walls.iter().zip(&body.contacts) {
+/// A free body may start in a wall up to this part of its extent.
+const MAX_DEPTH_IN_WALL: f64 = 0.05;
+/// It may start deeper if its springs then press with less than its weight times this factor: as it may rest.
+const MAX_LOAD_IN_WALL: f64 = 10.0;
+
+/// Bodies that start behind walls: with their centre of mass deeper than ten times the depth at which the springs of their
+/// particles carry their weight, or, unless `accept` is set, with particles or spheres far behind a wall.
+pub(super) fn behind_walls(model: &Model, state: &State, accept: bool) -> Vec<BuildError> {
+    let bodies = model.names.iter().zip(model.bodies.iter().zip(&state.bodies));
+    let check = |(name, (body, state)): (&String, (&Arc<BodyModel>, &BodyState))| {
+        let in_wall = || if accept { None } else { in_wall(model, body, name, state) };
+        outside(model, body, name, state).or_else(in_wall)
+    };
+    bodies.filter_map(check).collect()
+}
+
+fn outside(model: &Model, body: &BodyModel, name: &str, state: &BodyState) -> Option<BuildError> {
+    model.walls.iter().zip(&body.contacts).find_map(|(wall, law)| {
         let depth = wall.depth(state.position);
         let sag = body.particle_mass() * model.gravity.length() / law.stiffness;
-        if depth > 10.0 * sag {
-            let normal = wall.normal.to_array();
-            return Err(BuildError::Outside { body: name.to_owned(), normal, depth });
+        let normal = wall.normal.to_array();
+        (depth > 10.0 * sag).then(|| BuildError::Outside { body: name.to_owned(), normal, depth })
+    })
+}
+
+/// A free body that starts too deep in a wall, with the position at which it would touch its walls.
+fn in_wall(model: &Model, body: &BodyModel, name: &str, state: &BodyState) -> Option<BuildError> {
+    if !body.is_free() || model.walls.is_empty() {
+        return None;
+    }
+    let weight = body.mass * model.gravity.length();
+    let kinematics = Kinematics::new(body, state);
+    let mut position = state.position;
+    let mut deepest: Option<(f64, [f64; 3])> = None;
+    for (wall, law) in model.walls.iter().zip(&body.contacts) {
+        let WallDepth { depth, sum } = depth_in_wall(&kinematics, wall);
+        if depth <= 0.0 {
+            continue;
+        }
+        position += wall.normal * depth;
+        let is_refused = depth > MAX_DEPTH_IN_WALL * body.extent
+            && law.stiffness * sum > MAX_LOAD_IN_WALL * weight;
+        if is_refused && deepest.is_none_or(|(most, _)| depth > most) {
+            deepest = Some((depth, wall.normal.to_array()));
         }
     }
-    Ok(())
+    let (depth, normal) = deepest?;
+    let position = position.to_array();
+    Some(BuildError::InWall { body: name.to_owned(), normal, depth, position })
 }
 
 /// Names that are used more than once.

@@ -16,6 +16,7 @@ pub struct WorldBuilder {
     pub(super) force: bool,
     pub(super) material: Material,
     pub(super) overlaps: Overlaps,
+    pub(super) accept_start_in_walls: bool,
     pub(super) walls: Vec<(WallPlane, MaterialOverride)>,
     pub(super) bodies: Vec<Body>,
 }
@@ -32,6 +33,7 @@ impl Default for WorldBuilder {
             force: false,
             material: Material::default(),
             overlaps: Overlaps::default(),
+            accept_start_in_walls: false,
             walls: Vec::new(),
             bodies: Vec::new(),
         }
@@ -82,9 +84,15 @@ impl WorldBuilder {
         self
     }
 
-    /// The treatment of bodies that overlap initially; they are refused by default.
+    /// The treatment of bodies that overlap each other or walls initially; they are refused by default.
     pub fn overlaps(mut self, overlaps: Overlaps) -> Self {
         self.overlaps = overlaps;
+        self
+    }
+
+    /// Accepts bodies that start deep in walls, with their centre in front of them: for the scene of a run that has begun.
+    pub fn accept_start_in_walls(mut self, accept: bool) -> Self {
+        self.accept_start_in_walls = accept;
         self
     }
 

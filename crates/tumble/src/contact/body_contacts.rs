@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::chunk_contacts::{ChunkContacts, ContactBuffers};
 use super::context::ContactContext;
+use super::deep_contact::{DeepContact, WARNING_DEPTH};
 use super::gather::{self, ContactResults};
 use super::narrow_phase;
 use super::neighbour_list::{ChunkNeighbours, NeighbourLists};
@@ -27,7 +28,12 @@ pub(crate) struct BodyContacts {
     /// Friction springs after this step, of the chunks that [`Self::predict_and_evaluate`] has finished; those of other chunks
     /// are still in `contacts`.
     springs: Vec<PairSpring>,
+    /// The contact that was deepest so far, relative to what the bodies would have to pass through, if it was deep.
+    deepest: Option<DeepContact>,
 }
+
+/// Contacts that are examined in a step only to keep the deepest one for a warning.
+const MAX_RECORDED: usize = 4;
 
 impl BodyContacts {
     /// Rebuilds the neighbour lists if a body has moved by its skin. The poses are those of `state` already.
@@ -129,6 +135,37 @@ impl BodyContacts {
     /// The first two bodies that could pass through each other within a step.
     pub fn tunnelling_risk(&self) -> Option<TunnellingRisk> {
         self.contacts.iter().find_map(|contacts| contacts.tunnelling_risk)
+    }
+
+    /// The first contact so deep that the bodies may pass through each other; keeps the deepest of the others. `time` is that of
+    /// the state (s).
+    pub fn check_depths(&mut self, model: &Model, time: f64) -> Option<DeepContact> {
+        let Self { poses, contacts, deepest, .. } = self;
+        let mut deep = contacts.iter().flat_map(|contacts| &contacts.deep_contacts);
+        let mut unrecorded_left = MAX_RECORDED;
+        deep.find_map(|contact| {
+            let is_deeper = |than: &Option<DeepContact>, contact: &DeepContact| {
+                contact.share() > than.map_or(WARNING_DEPTH, |deepest| deepest.share())
+            };
+            if contact.share() <= 0.5 {
+                // only for the record, which is not worth much time: the limit is at least half of the passage
+                if unrecorded_left == 0 || !is_deeper(deepest, contact) {
+                    return None;
+                }
+                unrecorded_left -= 1;
+            }
+            // the limit of the pair is that of the thin parts of a mesh
+            let contact = DeepContact { time, ..contact.with_local_limit(model, poses) };
+            if is_deeper(deepest, &contact) {
+                *deepest = Some(contact);
+            }
+            contact.is_too_deep().then_some(contact)
+        })
+    }
+
+    /// The contact that was deepest so far, relative to what the bodies would have to pass through, if it was deep.
+    pub fn deepest_contact(&self) -> Option<&DeepContact> {
+        self.deepest.as_ref()
     }
 
     /// A copy of poses and neighbour lists, for queries about a state.

@@ -4,6 +4,7 @@ use fearless_simd::Simd;
 use glam::DVec3;
 
 use super::contact_lanes::{ContactLanes, LaneInput};
+use super::deep_contact::{DeepContact, WARNING_DEPTH};
 use super::neighbour_list::ChunkNeighbours;
 use super::pair::Pair;
 use super::pair_forces::{PairForces, PairLosses};
@@ -33,6 +34,8 @@ pub(crate) struct ChunkContacts {
     pub(super) released: Vec<f64>,
     /// The friction springs after the latest evaluation.
     pub(super) springs: Vec<PairSpring>,
+    /// Contacts so deep that bodies may soon pass through each other, after the latest full evaluation.
+    pub(super) deep_contacts: Vec<DeepContact>,
     /// The first pair whose bodies could pass through each other within a step.
     pub(super) tunnelling_risk: Option<TunnellingRisk>,
     /// Buffer for points that may touch.
@@ -67,6 +70,45 @@ impl ChunkContacts {
         self.pair_index.clear();
         self.pair_index.resize(pair_count, NO_CONTACT);
         self.tunnelling_risk = None;
+        self.deep_contacts.clear();
+    }
+
+    /// Lists the pairs whose deepest contact exceeds a part of their tunnelling limit; after a full evaluation.
+    #[inline(always)]
+    pub(super) fn find_deep_contacts(&mut self, pairs: &[Pair]) {
+        let is_deep = |forces: &PairForces, losses: &PairLosses| {
+            losses.max_depth > WARNING_DEPTH * pairs[forces.list_index as usize].tunnelling_limit
+        };
+        if self.pairs.iter().zip(&self.losses).any(|(forces, losses)| is_deep(forces, losses)) {
+            self.list_deep_contacts(pairs, is_deep);
+        }
+    }
+
+    #[cold]
+    fn list_deep_contacts(
+        &mut self,
+        pairs: &[Pair],
+        is_deep: impl Fn(&PairForces, &PairLosses) -> bool,
+    ) {
+        let mut latest = None;
+        for lanes in &self.lanes[..self.lanes_used] {
+            for lane in lanes.in_contact() {
+                let index = lanes.pair[lane];
+                let forces = &self.pairs[index as usize];
+                let losses = &self.losses[index as usize];
+                if !is_deep(forces, losses) {
+                    continue;
+                }
+                // the contacts of a pair follow each other
+                if latest != Some(index) {
+                    latest = Some(index);
+                    self.deep_contacts.push(DeepContact::new(&pairs[forces.list_index as usize]));
+                }
+                if let Some(deep) = self.deep_contacts.last_mut() {
+                    deep.add(lanes, lane);
+                }
+            }
+        }
     }
 
     /// Evaluates the forces of all contacts again, at the velocities of `poses`, and stores the springs.
@@ -88,6 +130,7 @@ impl ChunkContacts {
             lanes[index].add_forces::<S, false>(simd, poses, pairs, losses, 0.0);
             self.store_springs(index, &neighbours.pairs);
         }
+        self.find_deep_contacts(&neighbours.pairs);
     }
 
     /// Stores the springs of eight contacts after their evaluation.

@@ -23,6 +23,7 @@ mod broad_phase;
 mod chunk_contacts;
 mod contact_lanes;
 mod context;
+pub(crate) mod deep_contact;
 mod forces;
 mod friction;
 mod friction_history;
@@ -42,5 +43,7 @@ pub(crate) mod tunnelling;
 pub(crate) mod wall;
 
 pub(crate) use self::body_contacts::BodyContacts;
-pub(crate) use self::pair::can_touch;
+pub(crate) use self::pair::{
+    can_touch, contact_kinds, contact_law, sphere_radius, tunnelling_limit,
+};
 pub(crate) use self::since_kick::SinceKick;

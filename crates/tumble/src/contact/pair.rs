@@ -75,7 +75,7 @@ pub(super) fn feature_size(body: &BodyModel) -> f64 {
 }
 
 /// Radius of the spheres of a body; 0 where it has none (m).
-pub(super) fn sphere_radius(body: &BodyModel) -> f64 {
+pub(crate) fn sphere_radius(body: &BodyModel) -> f64 {
     if let Surface::Spheres { radius } = body.surface { radius } else { 0.0 }
 }
 
@@ -90,7 +90,7 @@ pub(crate) fn can_touch(first: &BodyModel, second: &BodyModel, kind: ContactKind
 }
 
 /// The kinds of contact that two bodies can have.
-pub(super) fn contact_kinds(first: &BodyModel, second: &BodyModel) -> &'static [ContactKind] {
+pub(crate) fn contact_kinds(first: &BodyModel, second: &BodyModel) -> &'static [ContactKind] {
     use ContactKind::{MeshPoint, PointMesh, SphereSphere};
     match (first.surface, second.surface) {
         (Surface::None, Surface::None) => &[],
@@ -102,7 +102,7 @@ pub(super) fn contact_kinds(first: &BodyModel, second: &BodyModel) -> &'static [
 }
 
 /// The law of one kind of contact between two bodies.
-pub(super) fn contact_law(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> ContactLaw {
+pub(crate) fn contact_law(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> ContactLaw {
     let law = first.pair_material.law(&second.pair_material);
     if is_single_point(first, second, kind) {
         // the patch is this point, and its effective mass is that of the bodies
@@ -136,7 +136,7 @@ pub(super) fn contact_distance(first: &BodyModel, second: &BodyModel, kind: Cont
 }
 
 /// How far one body may move relative to the other in a step (m): half of what it would have to pass through.
-pub(super) fn tunnelling_limit(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> f64 {
+pub(crate) fn tunnelling_limit(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> f64 {
     let mesh_thickness = |body: &BodyModel| {
         body.signed_distance.as_ref().map_or(0.0, |distance| distance.thickness())
     };

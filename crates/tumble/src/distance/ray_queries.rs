@@ -9,8 +9,8 @@ use super::triangle::Frame;
 const TOLERANCE: f64 = 1e-12;
 /// The maximum number of triangles at which [`thickness`] is sampled.
 const SAMPLE: usize = 512;
-/// The quantile that [`thickness`] returns, by area.
-const QUANTILE: f64 = 0.05;
+/// The quantiles that [`thickness`] returns, by area.
+const QUANTILES: [f64; 2] = [0.05, 0.5];
 /// Smaller depths, in units of the size, are ignored: they belong to parts that touch.
 const TOUCHING: f64 = 1e-9;
 
@@ -41,14 +41,24 @@ fn depth_below(tree: &Tree, slot: usize, size: f64) -> Option<f64> {
     let own = tree.frame(slot);
     let [a, b, c] = own.corners();
     let from = a + (b - a) / 3.0 + (c - a) / 3.0;
+    depth_along(tree, (from, own.normal), Some(slot), size)
+}
+
+/// The depth (m) of the solid below a point of its surface, against the `outward` direction.
+pub(super) fn depth_along(
+    tree: &Tree,
+    (from, outward): (DVec3, DVec3),
+    own: Option<usize>,
+    size: f64,
+) -> Option<f64> {
     // longer than the diagonal of the box
     let length = 2.0 * size;
-    let to = from - own.normal * length;
+    let to = from - outward * length;
     let mut nearest = f64::INFINITY;
     let ray = Ray { from, along: to - from, part: [TOUCHING, 1.0] };
     tree.along_ray(&ray, |other, frame| {
-        if other != slot
-            && frame.normal.dot(own.normal) < 0.0
+        if Some(other) != own
+            && frame.normal.dot(outward) < 0.0
             && let Some(part) = crossing(frame, from, to)
             && part * length > TOUCHING * size
         {
@@ -59,23 +69,23 @@ fn depth_below(tree: &Tree, slot: usize, size: f64) -> Option<f64> {
     (nearest <= 1.0).then_some(nearest * length)
 }
 
-/// The thickness of the solid (m): the 5 % quantile of the depth below the surface, by area.
-pub(super) fn thickness(tree: &Tree, sides: DVec3) -> f64 {
+/// The thickness of the solid (m): the 5 % quantile and the median of the depth below the surface, by area.
+pub(super) fn thickness(tree: &Tree, sides: DVec3) -> [f64; 2] {
     let size = sides.max_element();
     let mut depths: Vec<(f64, f64)> = sample(tree)
         .into_iter()
         .filter_map(|(slot, area)| Some((depth_below(tree, slot, size)?, area)))
         .collect();
     depths.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let enough = QUANTILE * depths.iter().map(|(_, area)| area).sum::<f64>();
-    let mut area = 0.0;
-    for &(depth, part) in &depths {
-        area += part;
-        if area >= enough {
-            return depth;
-        }
-    }
-    sides.min_element()
+    let all = depths.iter().map(|(_, area)| area).sum::<f64>();
+    QUANTILES.map(|quantile| {
+        let mut area = 0.0;
+        let found = depths.iter().find(|(_, part)| {
+            area += part;
+            area >= quantile * all
+        });
+        found.map_or(sides.min_element(), |(depth, _)| *depth)
+    })
 }
 
 /// Slots with the area (m²) that each represents: all, or [`SAMPLE`] of them spread evenly by area.

@@ -67,6 +67,7 @@ pub struct SignedDistance {
     /// `None` for meshes with holes, at which the signed distance is discontinuous.
     pub(super) grid: Option<BoundGrid>,
     thickness: f64,
+    median_thickness: f64,
     /// How much farther than the closest triangle a [`Patch`](super::Patch) extends (m).
     pub(super) patch_width: f64,
     is_turned: bool,
@@ -94,8 +95,10 @@ impl SignedDistance {
         }
 
         let bounds = surface.bounds;
+        let [thickness, median_thickness] = ray_queries::thickness(&tree, bounds.high - bounds.low);
         let mut made = Self {
-            thickness: ray_queries::thickness(&tree, bounds.high - bounds.low),
+            thickness,
+            median_thickness,
             patch_width: tree.mean_triangle_size(),
             max_coordinate: bounds.low.abs().max(bounds.high.abs()).max_element(),
             tree,
@@ -252,6 +255,21 @@ impl SignedDistance {
     /// large meshes it is sampled at 512 triangles, spread evenly by area.
     pub fn thickness(&self) -> f64 {
         self.thickness
+    }
+
+    /// The median of the depth below the surface, by area (m); see [`Self::thickness`].
+    pub(crate) fn median_thickness(&self) -> f64 {
+        self.median_thickness
+    }
+
+    /// The thickness of the solid (m) next to a point: from the closest point of its surface along the inward normal to
+    /// the opposite surface. `None` for a point that is not finite.
+    pub(crate) fn thickness_near(&self, point: DVec3) -> Option<f64> {
+        let nearest = self.query(point, UNUSED, f64::INFINITY)?;
+        let surface = (point - nearest.gradient * nearest.distance, nearest.gradient);
+        let own = self.slots[nearest.triangle as usize] as usize;
+        let size = (self.bounds.high - self.bounds.low).max_element();
+        ray_queries::depth_along(&self.tree, surface, Some(own), size)
     }
 
     /// The number of triangles that count.

@@ -2,9 +2,10 @@
 
 use glam::DMat3;
 
+use crate::contact::deep_contact::DeepContact;
 use crate::contact::tunnelling::TunnellingRisk;
 use crate::workspace::Failure;
-use crate::{Batch, BodyModel, BodyState, Model, Scratch, State, StepError};
+use crate::{Batch, BodyDepth, BodyModel, BodyState, Model, Scratch, State, StepError};
 
 /// Looks for numbers that are NaN or infinite, for particles deeper in a wall than half the distance to the wall that faces
 /// it, and for particles that move farther than that in one step: both could have passed through.
@@ -23,7 +24,7 @@ pub fn check(batch: &mut Batch) {
 }
 
 /// Reports what [`check`] found, or else two bodies whose relative displacement in one step exceeds the tunnelling limit of their
-/// contact: half of what the one would have to pass through.
+/// contact, half of what the one would have to pass through, or whose depth in each other exceeds half of that limit.
 ///
 /// # Errors
 /// [`StepError`] names the step, time, body, particle, quantity and value, and a time step that would do.
@@ -44,11 +45,31 @@ pub fn report_failure(
             other: None,
             // a quarter of the limit, so that the run can continue with a margin
             dt: limit.map(|limit| 0.25 * model.dt * limit / value),
+            body_depth: None,
         });
     }
-    match scratch.body_contacts.tunnelling_risk() {
-        Some(risk) => Err(tunnelling_error(model, state, &risk)),
+    if let Some(risk) = scratch.body_contacts.tunnelling_risk() {
+        return Err(tunnelling_error(model, state, &risk));
+    }
+    match scratch.body_contacts.check_depths(model, state.time) {
+        Some(deep) => Err(depth_error(model, state, &deep)),
         None => Ok(()),
+    }
+}
+
+/// Two bodies so deep in each other that they may pass through.
+fn depth_error(model: &Model, state: &State, deep: &DeepContact) -> StepError {
+    let found = BodyDepth::new(model, state, deep);
+    StepError {
+        step: state.step,
+        time: state.time,
+        body: found.first.clone(),
+        particle: None,
+        quantity: "depth",
+        value: found.depth,
+        other: Some(found.second.as_str().into()),
+        dt: found.dt,
+        body_depth: Some(Box::new(found)),
     }
 }
 
@@ -62,8 +83,9 @@ fn tunnelling_error(model: &Model, state: &State, risk: &TunnellingRisk) -> Step
         particle: Some(risk.particle as usize),
         quantity: "displacement",
         value: risk.displacement,
-        other: Some(name(risk.other)),
+        other: Some(name(risk.other).into()),
         dt: Some(0.5 * model.dt * risk.limit / risk.displacement),
+        body_depth: None,
     }
 }
 

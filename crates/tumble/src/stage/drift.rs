@@ -64,7 +64,7 @@ fn uniform_drag_flight(
 ) -> f64 {
     if rate == 0.0 {
         rotate(body, state, h);
-        state.position += state.velocity * h + gravity * (0.5 * h * h);
+        state.move_by(state.velocity * h + gravity * (0.5 * h * h));
         state.velocity += gravity * h;
         return 0.0;
     }
@@ -73,7 +73,7 @@ fn uniform_drag_flight(
     let lost =
         body.mass * drag.loss(state.velocity, gravity) + spin_energy * drag.rotational_loss();
     let (displacement, velocity) = drag.advance(state.velocity, gravity);
-    state.position += displacement;
+    state.move_by(displacement);
     state.velocity = velocity;
     state.angular_momentum *= drag.decay();
     lost

@@ -40,6 +40,7 @@ fn advance(
     // 5: velocity first, then position with the new velocity
     state.velocity += total.force / body.mass * h;
     state.position += state.velocity * h;
+    state.position_compensation = DVec3::ZERO;
 
     // 6: quaternion update with the angular velocity of the start of the step
     let omega = DQuat::from_xyzw(old_omega.x, old_omega.y, old_omega.z, 0.0);

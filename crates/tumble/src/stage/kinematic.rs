@@ -29,7 +29,7 @@ fn advance(
     let (old_offset, old_velocity) = oscillation.map_or(zero, |oscillation| oscillation.at(from));
     let (offset, velocity) = oscillation.map_or(zero, |oscillation| oscillation.at(until));
     let steady = state.velocity - old_velocity;
-    state.position += steady * h + (offset - old_offset);
+    state.move_by(steady * h + (offset - old_offset));
     state.velocity = steady + velocity;
     let rotation = DMat3::from_quat(state.orientation);
     let omega = body.angular_velocity(rotation, state.angular_momentum);

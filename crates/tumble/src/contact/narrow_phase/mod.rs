@@ -64,6 +64,9 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
     filler.history.release_all();
     let released = filler.history.released;
     contacts.released = released;
+    if !PREDICT {
+        contacts.find_deep_contacts(pairs);
+    }
 }
 
 /// Adds the points of a pair of spheres, or of spheres and a wall, that may touch; returns the smallest path length at

@@ -18,7 +18,7 @@ use self::frictionless::NormalSprings;
 use self::near_wall::NearWall;
 use crate::contact::SinceKick;
 use crate::kinematics::Kinematics;
-use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, WallPlane};
+use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, Surface, WallPlane};
 
 pub(crate) use self::friction::FrictionContacts;
 
@@ -150,6 +150,31 @@ pub(crate) fn elastic_energy(
     }
     let tangential = springs.iter().map(|spring| friction::energy(model, kinematics, spring));
     energy + tangential.sum::<f64>()
+}
+
+/// How deep the particles or spheres of a body are behind a wall.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WallDepth {
+    /// Depth of the deepest one (m); 0 where none is behind it.
+    pub depth: f64,
+    /// Sum of the depths (m), with the weights of the particles.
+    pub sum: f64,
+}
+
+/// The depths behind one wall of all particles, or of the spheres about them.
+pub(crate) fn depth_in_wall(kinematics: &Kinematics, wall: &WallPlane) -> WallDepth {
+    let Surface::Spheres { radius } = kinematics.body.surface else {
+        let sum =
+            NearWall::new(wall, kinematics).map_or(0.0, |near| near.depth_sums(kinematics).sum);
+        return WallDepth { depth: depth_behind(kinematics, wall), sum };
+    };
+    let particles = kinematics.body.shape.particles().iter();
+    let depths = particles
+        .map(|r| (wall.depth(kinematics.position + kinematics.rotation * r) + radius).max(0.0));
+    depths.fold(WallDepth::default(), |all, depth| WallDepth {
+        depth: all.depth.max(depth),
+        sum: all.sum + depth,
+    })
 }
 
 /// Depth of the deepest particle behind a wall (m); 0 where none is behind it.
