@@ -4,8 +4,9 @@
 //! the other: half of the thickness of a mesh next to the particle, plus the radius of a sphere; of two spheres the sum of
 //! their radii. Beyond that length l the contact would push the wrong way.
 //!
-//! A depth above 3/4 l is an error, or a warning where the mesh is much thinner than elsewhere. A particle of a body that passes through a plate is deeper than l − s/2 in at least one
-//! step, with s the displacement in a step, which is at most l ([`tunnelling`](super::tunnelling)); so this is an error too. In a
+//! A depth above 3/4 l is an error, or a warning where the mesh is much thinner than elsewhere. A particle of a body that
+//! passes through a plate is deeper than l − s/2 in at least one step, with s the displacement in a step, which is at most l
+//! ([`tunnelling`](super::tunnelling)); so this is an error too. In a
 //! wedge the faces are nearer than the thickness tells: up to an angle of 50° between them, no particle comes out on the
 //! other side unnoticed.
 
@@ -30,8 +31,8 @@ pub(crate) struct DeepContact {
     pub first: u32,
     pub second: u32,
     pub(super) kind: ContactKind,
-    /// Index of the particle, of the second body for [`ContactKind::MeshPoint`].
-    pub(super) particle: u32,
+    /// From the centre of mass of the first body to the contact (m).
+    pub(super) arm: DVec3,
     /// Unit normal, from the second body to the first.
     pub normal: DVec3,
     /// Depth (m).
@@ -58,7 +59,7 @@ impl DeepContact {
             first,
             second,
             kind,
-            particle: 0,
+            arm: DVec3::ZERO,
             normal: DVec3::ZERO,
             depth: 0.0,
             passage: tunnelling_limit,
@@ -75,8 +76,8 @@ impl DeepContact {
         let depth = lanes.depth[lane];
         self.load += lanes.stiffness[lane] * depth;
         if depth > self.depth {
-            (self.depth, self.particle) = (depth, lanes.particle[lane]);
-            self.normal = vector(&lanes.normal, lane);
+            self.depth = depth;
+            (self.arm, self.normal) = (vector(&lanes.arm, lane), vector(&lanes.normal, lane));
         }
     }
 
@@ -97,8 +98,8 @@ impl DeepContact {
         let body = |index: u32| (&*model.bodies[index as usize], &poses[index as usize]);
         let (first, second) = (body(self.first), body(self.second));
         let (local, is_thin) = match self.kind {
-            ContactKind::PointMesh => self.thickness(first, second),
-            ContactKind::MeshPoint => self.thickness(second, first),
+            ContactKind::PointMesh => self.thickness(first, second, first.1),
+            ContactKind::MeshPoint => self.thickness(second, first, first.1),
             ContactKind::SphereSphere | ContactKind::SphereWall => (self.passage, false),
         };
         let passage = self.passage.max(local);
@@ -113,11 +114,11 @@ impl DeepContact {
     /// Half of the thickness of the mesh next to the particle, plus the radius of a sphere (m); and whether it is thin there.
     fn thickness(
         &self,
-        (body, pose): (&BodyModel, &BodyPose),
+        (body, _): (&BodyModel, &BodyPose),
         (mesh, mesh_pose): (&BodyModel, &BodyPose),
+        first: &BodyPose,
     ) -> (f64, bool) {
-        let slot = body.shape.particles().slot_of_index(self.particle);
-        let offset = pose.particle_position(body, slot) - mesh_pose.position;
+        let offset = first.position + self.arm - mesh_pose.position;
         let local = mesh_pose.rotation.transpose() * offset;
         let found = mesh.signed_distance.as_ref().and_then(|distance| {
             let thickness = distance.thickness_near(local)?;

@@ -85,20 +85,35 @@ pub(super) fn mobility(body: &BodyModel, rotation: DMat3, wrench: &Wrench) -> f6
     wrench.force.length_squared() / body.mass + wrench.torque.dot(turning)
 }
 
+/// A contact that begins at a kick, up to this part of the approach in a step, begins after it: rounding must not decide whether
+/// it counts at this kick, at the next, or at both.
+const ROUNDING: f64 = 1e-9;
+
 /// The factor by which the dashpots of a contact at `depth` (m) are multiplied in a kick over a time in which it approaches by
 /// `approach` (m).
 ///
-/// A contact that is less deep than that has touched since the kick before. Its dashpot is due for the part of the time between the
+/// A contact that is no deeper than that has touched since the kick before. Its dashpot is due for the part of the time between the
 /// kicks in which it touched, and for half of the time to the next kick, which this kick stands for: together ½ + δ/(u h) of the time h.
 pub(super) fn touch_factor(depth: f64, approach: f64) -> f64 {
-    if approach > depth { 0.5 + depth / approach } else { 1.0 }
+    let rounding = ROUNDING * approach;
+    if approach <= 0.0 || depth - approach > rounding {
+        1.0
+    } else if depth > rounding {
+        0.5 + depth / approach
+    } else {
+        0.0
+    }
 }
 
 /// [`touch_factor`] of eight contacts.
 #[inline(always)]
 pub(super) fn touch_factors<S: Simd>(simd: S, depth: f64x8<S>, approach: f64x8<S>) -> f64x8<S> {
     let factor = f64x8::splat(simd, 0.5) + depth / approach;
-    approach.simd_gt(depth).select(factor, f64x8::splat(simd, 1.0))
+    let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
+    let rounding = approach * f64x8::splat(simd, ROUNDING);
+    let factor = depth.simd_gt(rounding).select(factor, zero);
+    let is_older = (depth - approach).simd_gt(rounding) | approach.simd_le(zero);
+    is_older.select(one, factor)
 }
 
 /// The patch of two bodies, or of a body of spheres and a wall.

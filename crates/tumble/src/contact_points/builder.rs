@@ -15,7 +15,7 @@ const EDGE_TOLERANCE: f64 = 0.01;
 /// The longest edge of a face without points of its own, in units of the size of the surface.
 const LONGEST_FACE_EDGE: f64 = 0.15;
 /// The largest number of parts into which the edges of a face are divided to place its points.
-const MOST_PARTS: f64 = 4.0;
+const MOST_PARTS: f64 = 3.0;
 
 /// Cosine of the angle between normals up to which a plane can touch the points of both at once.
 const SAME_SIDE: f64 = 0.9;

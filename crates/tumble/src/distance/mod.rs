@@ -7,6 +7,7 @@
 mod bound_grid;
 mod error;
 mod facing;
+mod normal_cones;
 mod normals;
 mod oriented_surface;
 mod patch;
@@ -17,7 +18,8 @@ mod tree;
 mod triangle;
 
 pub use error::SurfaceError;
-pub(crate) use facing::Exit;
+pub(crate) use facing::{Exit, WayWeight};
+pub(crate) use normal_cones::NormalCone;
 pub(crate) use oriented_surface::OrientedSurface;
 pub(crate) use patch::Patch;
 pub use signed_distance::{Nearest, SignedDistance};

@@ -38,6 +38,11 @@ pub(super) trait Query {
     fn limit(&self) -> f64;
     /// Visits a group, given the squared distances of its triangles.
     fn visit(&mut self, group: u32, squared: &[f64; WIDTH], tree: &Tree);
+    /// Whether a child of a node can be left out.
+    #[inline(always)]
+    fn leaves_out(&self, _node: u32, _lane: usize) -> bool {
+        false
+    }
     /// Notes that groups at this squared distance (m²) or beyond are skipped.
     #[inline(always)]
     fn skip(&mut self, _squared: f64) {}
@@ -273,9 +278,13 @@ impl Tree {
                     let squared = node.squared(simd, point);
                     // push in order of descending distance, so that the nearest is popped first
                     let start = count;
-                    for (&squared, &child) in squared.iter().zip(&node.child) {
+                    let number = child;
+                    for (lane, (&squared, &child)) in squared.iter().zip(&node.child).enumerate() {
                         if squared > query.limit() {
                             query.skip(squared);
+                            continue;
+                        }
+                        if query.leaves_out(number, lane) {
                             continue;
                         }
                         let mut at = count;

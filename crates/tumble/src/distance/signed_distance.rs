@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::bound_grid::BoundGrid;
 use super::error::SurfaceError;
+use super::normal_cones::NormalCones;
 use super::normals::{Pseudonormals, pseudonormals};
 use super::oriented_surface::OrientedSurface;
 use super::ray_queries;
@@ -57,6 +58,7 @@ pub struct Nearest {
 #[derive(Clone, Debug)]
 pub struct SignedDistance {
     pub(super) tree: Tree,
+    pub(super) cones: NormalCones,
     /// Pseudonormals by slot.
     normals: Vec<Pseudonormals>,
     /// Slots by triangle of the mesh; [`UNUSED`] for ignored triangles.
@@ -101,6 +103,7 @@ impl SignedDistance {
             median_thickness,
             patch_width: tree.mean_triangle_size(),
             max_coordinate: bounds.low.abs().max(bounds.high.abs()).max_element(),
+            cones: NormalCones::new(&tree),
             tree,
             normals,
             slots,
@@ -293,6 +296,7 @@ impl SignedDistance {
             + self.tree.memory()
             + size_of::<Pseudonormals>() * self.normals.capacity()
             + size_of::<u32>() * self.slots.capacity()
+            + self.cones.memory()
             + self.grid.as_ref().map_or(0, BoundGrid::memory)
     }
 }

@@ -9,8 +9,10 @@ use glam::DVec3;
 /// Slope, per half-length, of the term that draws the point to the middle of the segment. It decides where a segment that
 /// lies flat on a face touches, so that the point moves continuously as the segment tilts.
 const CENTRING: f64 = 1e-3;
-/// The error of the value at which the search ends, in units of the half-length of the segment.
-const TOLERANCE: f64 = 1e-10;
+/// A minimum this close to zero is none, and a slope this small is zero, in units of the half-length of the segment.
+const NEGLIGIBLE: f64 = 1e-8;
+/// The relative error of the value at which the search ends.
+const TOLERANCE: f64 = 1e-7;
 /// The largest number of tries between the ends.
 const TRIES: usize = 24;
 
@@ -61,7 +63,7 @@ pub(super) fn minimum(
         Some(Try { t, value, slope, gradient, turn })
     };
     let first = at(0.0)?;
-    if first.slope.abs() <= TOLERANCE * length {
+    if first.slope.abs() <= NEGLIGIBLE * length {
         return below_zero(single(&first, half));
     }
     let end = at(-first.slope.signum())?;
@@ -72,11 +74,11 @@ pub(super) fn minimum(
     for _ in 0..TRIES {
         // the tangents at both ends are lower bounds
         let (t, bound) = crossing(&low, &high);
-        if bound > 0.0 {
+        if bound > -NEGLIGIBLE * length {
             return None;
         }
         let tried = at(t.clamp(low.t, high.t))?;
-        if tried.value - bound <= TOLERANCE * length {
+        if tried.value - bound <= TOLERANCE * bound.abs() {
             break;
         }
         if tried.slope < 0.0 { low = tried } else { high = tried }
