@@ -13,7 +13,7 @@ use tumble_io::scene::{LoadOptions, Loaded, Source, load_text};
 
 const SCENE: &str = "dt = 1e-3\nduration = 0.05\noutput = { interval = 0.01 }\n\
     wall = [{ normal = [0, 1, 0] }]\n\
-    [[body]]\nname = \"a\"\nshape = \"box\"\nposition = [0, 0.06, 0]\ninitial_velocity = [0, -1, 0]\n\
+    [[body]]\nname = \"a\"\nshape = \"box\"\nposition = [0, 0.11, 0]\ninitial_velocity = [0, -1, 0]\n\
     initial_angular_velocity = [1, 2, 3]\n\
     [[body]]\nname = \"b\"\nparticles = [[0, 0, 0], [1, 0, 0]]\nposition = [0, 2, 0]\n";
 

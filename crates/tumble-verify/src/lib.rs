@@ -5,6 +5,7 @@
 //! and the tests of this package run the quick ones.
 
 mod check;
+mod coarse_mesh;
 mod collision;
 mod contact;
 mod flight;
@@ -42,6 +43,9 @@ pub const CASES: &[Case] = &[
     collision::CRADLE,
     collision::UNEQUAL,
     collision::OBLIQUE,
+    coarse_mesh::RESTING,
+    coarse_mesh::CROSSING_EDGES,
+    coarse_mesh::SLIDING,
     kinematic::SLOPE,
     kinematic::WALL_OR_MESH,
     kinematic::BELT,

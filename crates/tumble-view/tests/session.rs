@@ -213,6 +213,7 @@ fn edits_of_shape_mass_and_initial_state_wait_for_a_reset() {
     let mut session = session();
     play(&mut session, 50);
     set(&mut session, "body.0.scale", "0.5").unwrap();
+    set(&mut session, "overlaps", "\"push\"").unwrap();
     set(&mut session, "body.0.initial_velocity.0", "2.5").unwrap();
     set(&mut session, "body.1.copies.count", "[3, 1, 1]").unwrap();
     set(&mut session, "body.0.mass", "7").unwrap();

@@ -1,13 +1,13 @@
 //! Buffers for one batch of bodies.
 
-use crate::contact::wall::{FrictionContacts, WallContacts};
+use crate::contact::wall::WallContacts;
 use crate::{FrictionSpring, RunTotals};
 
 /// Buffers for one batch of bodies, and what the batch reports at the end of a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
-    /// Contacts of one body with walls that have friction.
-    pub friction_contacts: FrictionContacts,
+    /// Contacts of one body with walls.
+    pub contacts: WallContacts,
     /// Contacts with walls of each body of the batch, where bodies touch each other too.
     pub wall_contacts: Vec<WallContacts>,
     /// Friction springs of one body at the beginning of a sub-step, and at its end.

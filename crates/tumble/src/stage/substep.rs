@@ -19,7 +19,7 @@ use glam::DMat3;
 use super::drift::drift_body;
 use super::kick::kick_body;
 use crate::contact::SinceKick;
-use crate::contact::wall::{self, FrictionContacts, WallContactOutput, wall_contact_forces};
+use crate::contact::wall::{self, WallContactOutput, WallContacts, wall_contact_forces};
 use crate::kinematics::Kinematics;
 use crate::{Batch, BodyForces, BodyModel, BodyState, FrictionSpring, Model, RunTotals, Wrench};
 
@@ -66,7 +66,7 @@ pub fn substep(batch: &mut Batch, tolerance: f64) {
             springs: &mut springs[index],
             forces: &mut forces[index],
             next_springs: &mut next_springs[index],
-            friction_contacts: &mut workspace.friction_contacts,
+            contacts: &mut workspace.contacts,
             impulse: Wrench::default(),
         };
         workspace.totals += stepper.advance(&mut workspace.saved_springs, tolerance);
@@ -83,7 +83,7 @@ struct BodyStepper<'a> {
     springs: &'a mut Vec<FrictionSpring>,
     forces: &'a mut BodyForces,
     next_springs: &'a mut Vec<FrictionSpring>,
-    friction_contacts: &'a mut FrictionContacts,
+    contacts: &'a mut WallContacts,
     /// Contact impulse over the step so far (N·s, N·m·s).
     impulse: Wrench,
 }
@@ -263,7 +263,7 @@ impl BodyStepper<'_> {
         let output = WallContactOutput {
             forces: self.forces,
             next_springs: self.next_springs,
-            friction_contacts: self.friction_contacts,
+            contacts: self.contacts,
         };
         let (model, body) = (self.model, self.body);
         wall_contact_forces(model, body, self.state, self.springs, output, h, since_kick);

@@ -32,8 +32,8 @@ pub fn wall_contact(batch: &mut Batch, h: f64) {
             let contacts = &mut workspace.wall_contacts[index];
             contacts.predict(model, body, state, springs, (forces, next_springs), (h, &since_kick));
         } else {
-            let friction_contacts = &mut workspace.friction_contacts;
-            let output = WallContactOutput { forces, next_springs, friction_contacts };
+            let contacts = &mut workspace.contacts;
+            let output = WallContactOutput { forces, next_springs, contacts };
             wall_contact_forces(model, body, state, springs, output, h, &since_kick);
         }
     }

@@ -14,7 +14,12 @@ const NEGLIGIBLE: f64 = 1e-8;
 /// The relative error of the value at which the search ends.
 const TOLERANCE: f64 = 1e-7;
 /// The largest number of tries between the ends.
-const TRIES: usize = 24;
+const TRIES: usize = 60;
+
+/// How far above the tangents the best try may be, relative to its value, for them to be a bound: the function is convex.
+const SLACK: f64 = 1e-4;
+/// Distance from the minimum at which the derivatives on both sides are taken, in units of the half-length.
+const BESIDE: f64 = 1e-6;
 
 /// Value (m) and derivatives of a function at a point.
 #[derive(Clone, Copy, Debug)]
@@ -71,19 +76,41 @@ pub(super) fn minimum(
         return below_zero(single(&end, half));
     }
     let (mut low, mut high) = if first.slope < 0.0 { (first, end) } else { (end, first) };
-    for _ in 0..TRIES {
+    let mut best = if end.value < first.value { end } else { first };
+    for number in 0..TRIES {
         // the tangents at both ends are lower bounds
         let (t, bound) = crossing(&low, &high);
         if bound > -NEGLIGIBLE * length {
             return None;
         }
-        let tried = at(t.clamp(low.t, high.t))?;
+        // where the function is curved, tangents at one end alone converge slowly: halve the interval now and then
+        let t = if number % 3 == 2 { 0.5 * (low.t + high.t) } else { t.clamp(low.t, high.t) };
+        let tried = at(t)?;
+        if tried.value < best.value {
+            best = tried;
+        }
+        // even the last one: its gradient counts where the function is curved
+        if tried.slope < 0.0 {
+            low = tried
+        } else {
+            high = tried
+        }
         if tried.value - bound <= TOLERANCE * bound.abs() {
             break;
         }
-        if tried.slope < 0.0 { low = tried } else { high = tried }
     }
-    below_zero(crest(&low, &high, half))
+    if low.turn != DVec3::ZERO || high.turn != DVec3::ZERO {
+        // the derivative at a distance from the minimum is another, also where the function is linear
+        let (t, _) = crossing(&low, &high);
+        low = at((t - BESIDE).max(low.t))?;
+        high = at((t + BESIDE).min(high.t))?;
+        if low.slope >= 0.0 || high.slope <= 0.0 {
+            return below_zero(single(if low.slope >= 0.0 { &low } else { &high }, half));
+        }
+    }
+    let (t, value) = crossing(&low, &high);
+    let is_convex = (low.t..=high.t).contains(&t) && best.value - value <= SLACK * value.abs();
+    below_zero(if is_convex { crest(&low, &high, half) } else { single(&best, half) })
 }
 
 fn below_zero(minimum: Minimum) -> Option<Minimum> {

@@ -27,10 +27,12 @@ struct DampedWall {
 }
 
 impl NormalSprings {
-    /// The springs at a pose. The velocities, together with the time `h` (s) since the latest kick, tell whether a patch has touched
+    /// Sets the springs to those at a pose. The velocities, together with the time `h` (s) since the latest kick, tell whether a patch has touched
     /// since then.
-    pub fn new(model: &Model, kinematics: &Kinematics, h: f64) -> Self {
-        let mut springs = Self::default();
+    pub fn update(&mut self, model: &Model, kinematics: &Kinematics, h: f64) {
+        let springs = self;
+        springs.damped.clear();
+        (springs.all, springs.max_depth) = (Wrench::default(), 0.0);
         for (wall, law) in near_walls(model, kinematics) {
             let depths = wall.depth_sums(kinematics);
             if depths.sum <= 0.0 {
@@ -53,7 +55,6 @@ impl NormalSprings {
                 springs.damped.push(DampedWall { wall, law, spring });
             }
         }
-        springs
     }
 
     /// The dashpots at the velocities of `kinematics`: sums of max(0, k δ − c_n u·n), less the springs.

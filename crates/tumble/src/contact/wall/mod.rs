@@ -20,7 +20,7 @@ use crate::contact::SinceKick;
 use crate::kinematics::Kinematics;
 use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, Surface, WallPlane};
 
-pub(crate) use self::friction::FrictionContacts;
+use self::friction::FrictionContacts;
 
 /// Where the results of [`wall_contact_forces`] go.
 pub(crate) struct WallContactOutput<'a> {
@@ -28,8 +28,8 @@ pub(crate) struct WallContactOutput<'a> {
     pub forces: &'a mut BodyForces,
     /// Friction springs after this evaluation.
     pub next_springs: &'a mut Vec<FrictionSpring>,
-    /// Buffer for the contacts that have friction.
-    pub friction_contacts: &'a mut FrictionContacts,
+    /// Buffer for the contacts.
+    pub contacts: &'a mut WallContacts,
 }
 
 /// The contacts of one body with walls, between the two evaluations of a kick.
@@ -49,17 +49,19 @@ pub(crate) fn wall_contact_forces(
     h: f64,
     since_kick: &SinceKick,
 ) {
-    let WallContactOutput { forces, next_springs, friction_contacts } = output;
+    let WallContactOutput { forces, next_springs, contacts } = output;
     next_springs.clear();
     let time = (h, since_kick);
-    let first = first_evaluation(model, body, state, springs, forces, friction_contacts, time);
-    let Some((kinematics, normal_springs)) = first else { return };
+    let Some(kinematics) = contacts.first_evaluation(model, body, state, springs, forces, time)
+    else {
+        return;
+    };
     if h != 0.0 && forces.max_depth > 0.0 && body.is_damped {
         // a second evaluation at the mid-kick velocities of the first makes dashpots second order
         let mid_kick = kinematics.at_mid_kick(&forces.contact(), h);
-        evaluate(model, &mid_kick, &normal_springs, forces, friction_contacts);
+        contacts.evaluate(model, &mid_kick, forces);
     }
-    friction_contacts.store_springs(&kinematics, next_springs);
+    contacts.friction.store_springs(&kinematics, next_springs);
 }
 
 impl WallContacts {
@@ -75,10 +77,8 @@ impl WallContacts {
         time: (f64, &SinceKick),
     ) {
         next_springs.clear();
-        let first = first_evaluation(model, body, state, springs, forces, &mut self.friction, time);
-        if let Some((kinematics, normal_springs)) = first {
+        if let Some(kinematics) = self.first_evaluation(model, body, state, springs, forces, time) {
             self.friction.store_springs(&kinematics, next_springs);
-            self.normal_springs = normal_springs;
         }
     }
 
@@ -91,49 +91,43 @@ impl WallContacts {
         next_springs: &mut Vec<FrictionSpring>,
     ) {
         next_springs.clear();
-        evaluate(model, mid_kick, &self.normal_springs, forces, &mut self.friction);
+        self.evaluate(model, mid_kick, forces);
         self.friction.store_springs(mid_kick, next_springs);
     }
-}
 
-/// Finds the contacts of a body with walls, and sets its forces to those at the velocities in the middle of the flight since the latest
-/// kick; `None` where no wall is near.
-fn first_evaluation<'a>(
-    model: &Model,
-    body: &'a BodyModel,
-    state: &BodyState,
-    springs: &[FrictionSpring],
-    forces: &mut BodyForces,
-    friction_contacts: &mut FrictionContacts,
-    (h, since_kick): (f64, &SinceKick),
-) -> Option<(Kinematics<'a>, NormalSprings)> {
-    forces.clear_contact();
-    let is_far = |wall: &WallPlane| wall.depth(state.position) < -body.bounding_radius();
-    if springs.is_empty() && model.walls.iter().all(is_far) {
-        return None;
+    /// Finds the contacts of a body with walls, and sets its forces to those at the velocities in the middle of the flight since the
+    /// latest kick; `None` where no wall is near.
+    fn first_evaluation<'a>(
+        &mut self,
+        model: &Model,
+        body: &'a BodyModel,
+        state: &BodyState,
+        springs: &[FrictionSpring],
+        forces: &mut BodyForces,
+        (h, since_kick): (f64, &SinceKick),
+    ) -> Option<Kinematics<'a>> {
+        forces.clear_contact();
+        let is_far = |wall: &WallPlane| wall.depth(state.position) < -body.bounding_radius();
+        if springs.is_empty() && model.walls.iter().all(is_far) {
+            return None;
+        }
+        let kinematics = Kinematics::new(body, state);
+        // over the time between two kicks a body at rest has no velocity, so that the prediction leaves it at rest
+        let mid_flight = kinematics.in_mid_flight(model, state, h);
+        self.normal_springs.update(model, &mid_flight, h);
+        self.friction.detect(model, &mid_flight, springs, h, since_kick);
+        self.evaluate(model, &mid_flight, forces);
+        Some(kinematics)
     }
-    let kinematics = Kinematics::new(body, state);
-    // over the time between two kicks a body at rest has no velocity, so that the prediction leaves it at rest
-    let mid_flight = kinematics.in_mid_flight(model, state, h);
-    let normal_springs = NormalSprings::new(model, &mid_flight, h);
-    friction_contacts.detect(model, &mid_flight, springs, h, since_kick);
-    evaluate(model, &mid_flight, &normal_springs, forces, friction_contacts);
-    Some((kinematics, normal_springs))
-}
 
-/// Sets the forces of all contacts at the velocities of `kinematics`.
-fn evaluate(
-    model: &Model,
-    kinematics: &Kinematics,
-    normal_springs: &NormalSprings,
-    forces: &mut BodyForces,
-    friction_contacts: &mut FrictionContacts,
-) {
-    forces.clear_contact();
-    forces.spring = normal_springs.all;
-    forces.dashpot = normal_springs.dashpots(kinematics);
-    forces.max_depth = normal_springs.max_depth;
-    friction_contacts.add_forces(model, kinematics, forces);
+    /// Sets the forces of all contacts at the velocities of `kinematics`.
+    fn evaluate(&mut self, model: &Model, kinematics: &Kinematics, forces: &mut BodyForces) {
+        forces.clear_contact();
+        forces.spring = self.normal_springs.all;
+        forces.dashpot = self.normal_springs.dashpots(kinematics);
+        forces.max_depth = self.normal_springs.max_depth;
+        self.friction.add_forces(model, kinematics, forces);
+    }
 }
 
 /// Energy in the wall contact springs of one body, normal and tangential (J).

@@ -43,12 +43,13 @@ fn wall_contact_has_the_same_bits_at_every_simd_level() {
             let mut kinematics = Kinematics::new(&model.bodies[0], &state.bodies[0]);
             kinematics.level = level;
             let (mut forces, mut springs) = (BodyForces::default(), Vec::new());
-            let mut contacts = FrictionContacts::default();
-            let normal_springs = NormalSprings::new(model, &kinematics, model.dt);
+            let mut contacts = WallContacts::default();
+            contacts.normal_springs.update(model, &kinematics, model.dt);
             let since_kick = SinceKick::none(state.time);
-            contacts.detect(model, &kinematics, &state.springs[0], model.dt, &since_kick);
-            evaluate(model, &kinematics, &normal_springs, &mut forces, &mut contacts);
-            contacts.store_springs(&kinematics, &mut springs);
+            let old = &state.springs[0];
+            contacts.friction.detect(model, &kinematics, old, model.dt, &since_kick);
+            contacts.evaluate(model, &kinematics, &mut forces);
+            contacts.friction.store_springs(&kinematics, &mut springs);
             (forces, springs, elastic_energy(model, &kinematics, &state.springs[0]))
         };
         let best = evaluate_at(levels()[0]);
