@@ -18,6 +18,10 @@ use crate::Mesh;
 const UNUSED: u32 = u32::MAX;
 /// The error of coordinates in units of rounding; a smaller distance has no direction.
 const ROUNDINGS: f64 = 8.0;
+/// The cosine of the angle between the normals of two faces below which their edge is sharp.
+const SHARP: f64 = 0.5;
+/// A vertex no farther above the plane of a face is in it, in units of the size of the mesh.
+const FLAT: f64 = 1e-9;
 /// The largest coordinate (m) whose square is in the range of doubles.
 const FARTHEST: f64 = 1e140;
 
@@ -73,6 +77,8 @@ pub struct SignedDistance {
     /// How much farther than the closest triangle a [`Patch`](super::Patch) extends (m).
     pub(super) patch_width: f64,
     is_turned: bool,
+    has_sharp_edges: bool,
+    is_convex: bool,
     holes: usize,
     pub(super) level: Level,
 }
@@ -110,6 +116,8 @@ impl SignedDistance {
             bounds,
             grid: None,
             is_turned: surface.is_turned,
+            has_sharp_edges: has_sharp_edges(&surface),
+            is_convex: is_convex(mesh, &surface),
             holes: surface.holes,
             level: Level::new(),
         };
@@ -290,6 +298,16 @@ impl SignedDistance {
         self.is_turned
     }
 
+    /// Whether two adjacent faces have normals at 60° or more to each other.
+    pub(crate) fn has_sharp_edges(&self) -> bool {
+        self.has_sharp_edges
+    }
+
+    /// Whether no edge is concave. (Of several convex parts this is true as well.)
+    pub(crate) fn is_convex(&self) -> bool {
+        self.is_convex
+    }
+
     /// Memory in use (bytes).
     pub fn memory(&self) -> usize {
         size_of::<Self>()
@@ -299,4 +317,23 @@ impl SignedDistance {
             + self.cones.memory()
             + self.grid.as_ref().map_or(0, BoundGrid::memory)
     }
+}
+
+fn has_sharp_edges(surface: &OrientedSurface) -> bool {
+    surface.edges().any(|edge| match edge {
+        [one, other] => {
+            surface.faces[one.face].normal().dot(surface.faces[other.face].normal()) < SHARP
+        }
+        _ => false,
+    })
+}
+
+fn is_convex(mesh: &Mesh, surface: &OrientedSurface) -> bool {
+    let size = (surface.bounds.high - surface.bounds.low).length();
+    surface.edges().all(|edge| {
+        let [one, other] = edge else { return false };
+        let opposite = surface.faces[other.face].corners[(other.corner + 2) % 3];
+        let [apex, start] = [opposite, one.ends[0]].map(|i| mesh.vertices[i as usize]);
+        (apex - start).dot(surface.faces[one.face].normal()) <= FLAT * size
+    })
 }

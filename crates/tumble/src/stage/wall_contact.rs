@@ -8,7 +8,7 @@ use crate::kinematics::Kinematics;
 /// Sets the wall contact forces on every body that may touch a wall, for a kick over the time `h` (s): dashpots see the mean
 /// of the velocities before and after the kick. With h = 0 they see the velocities as they are.
 ///
-/// Where bodies touch each other, the kick is not known yet. The forces then serve to predict it, and [`wall_contact_again`]
+/// Where bodies touch each other, the kick is not known yet. The forces then serve to predict it, and `wall_contact_again`
 /// follows. Bodies of spheres meet walls in [`around_body_contact`](super::around_body_contact).
 pub fn wall_contact(batch: &mut Batch, h: f64) {
     let since_kick = SinceKick::at_kick(batch.model, batch.time);

@@ -55,9 +55,10 @@ struct Try {
 }
 
 /// The minimum on the segment from `middle` − `half` to `middle` + `half`; `evaluate` returns the function at a vector from
-/// the middle. `None` if it is not below zero.
+/// the middle. `None` if it is not below zero. If the function is convex, fewer tries are enough.
 pub(super) fn minimum(
     half: DVec3,
+    is_convex: bool,
     mut evaluate: impl FnMut(DVec3) -> Option<Sample>,
 ) -> Option<Minimum> {
     let length = half.length();
@@ -80,11 +81,11 @@ pub(super) fn minimum(
     for number in 0..TRIES {
         // the tangents at both ends are lower bounds
         let (t, bound) = crossing(&low, &high);
-        if bound > -NEGLIGIBLE * length {
+        if is_convex && bound > -NEGLIGIBLE * length {
             return None;
         }
         // where the function is curved, tangents at one end alone converge slowly: halve the interval now and then
-        let t = if number % 3 == 2 { 0.5 * (low.t + high.t) } else { t.clamp(low.t, high.t) };
+        let t = if number % 2 == 1 { 0.5 * (low.t + high.t) } else { t.clamp(low.t, high.t) };
         let tried = at(t)?;
         if tried.value < best.value {
             best = tried;
@@ -95,11 +96,16 @@ pub(super) fn minimum(
         } else {
             high = tried
         }
-        if tried.value - bound <= TOLERANCE * bound.abs() {
+        let is_found = if is_convex {
+            tried.value - bound <= TOLERANCE * bound.abs()
+        } else {
+            high.t - low.t <= TOLERANCE
+        };
+        if is_found {
             break;
         }
     }
-    if low.turn != DVec3::ZERO || high.turn != DVec3::ZERO {
+    if is_convex && (low.turn != DVec3::ZERO || high.turn != DVec3::ZERO) {
         // the derivative at a distance from the minimum is another, also where the function is linear
         let (t, _) = crossing(&low, &high);
         low = at((t - BESIDE).max(low.t))?;
@@ -109,8 +115,8 @@ pub(super) fn minimum(
         }
     }
     let (t, value) = crossing(&low, &high);
-    let is_convex = (low.t..=high.t).contains(&t) && best.value - value <= SLACK * value.abs();
-    below_zero(if is_convex { crest(&low, &high, half) } else { single(&best, half) })
+    let is_bound = (low.t..=high.t).contains(&t) && best.value - value <= SLACK * value.abs();
+    below_zero(if is_bound { crest(&low, &high, half) } else { single(&best, half) })
 }
 
 fn below_zero(minimum: Minimum) -> Option<Minimum> {
@@ -152,7 +158,7 @@ mod tests {
     }
 
     fn deepest(cube: &SignedDistance, middle: DVec3, half: DVec3) -> Option<Minimum> {
-        minimum(half, |offset| {
+        minimum(half, true, |offset| {
             let nearest = cube.query(middle + offset, 0, f64::INFINITY)?;
             Some(Sample { value: nearest.distance, gradient: nearest.gradient, turn: DVec3::ZERO })
         })
