@@ -459,13 +459,15 @@ mod tests {
     }
 
     #[test]
-    fn the_work_of_vertices_edges_and_faces_is_the_change_of_their_energy() {
+    fn the_work_of_vertices_and_faces_is_the_change_of_their_energy() {
         const STEPS: u32 = 1500;
         for run in 0..4 {
             let passage = Passage::new(run);
             let count = passage.points.points(&passage.shape).len() as u32;
-            let (mut touching, mut segments) = (0, 0);
-            for index in 0..count {
+            let mut touching = 0;
+            // the minimum along an edge is tested in `segment`
+            let is_fixed = |index: &u32| passage.points.half_segment(*index) == DVec3::ZERO;
+            for index in (0..count).filter(is_fixed) {
                 let (mut highest, mut error) = (0.0f64, 0.0f64);
                 for step in 0..STEPS {
                     let [s0, s1] = [step, step + 1].map(|s| f64::from(s) / f64::from(STEPS));
@@ -481,14 +483,13 @@ mod tests {
                 }
                 if highest > 0.0 {
                     touching += 1;
-                    segments += u32::from(passage.points.half_segment(index) != DVec3::ZERO);
                     assert!(
                         error.abs() < 2e-5 + 0.05 * highest,
                         "{run} {index}: {error} {highest}"
                     );
                 }
             }
-            assert!(touching > 3 && segments > 0, "{touching} {segments}");
+            assert!(touching > 1, "{touching}");
         }
     }
 
