@@ -484,7 +484,7 @@ mod tests {
                 if highest > 0.0 {
                     touching += 1;
                     assert!(
-                        error.abs() < 2e-5 + 0.05 * highest,
+                        error.abs() < 2e-5 + 5e-3 * highest,
                         "{run} {index}: {error} {highest}"
                     );
                 }
