@@ -22,8 +22,6 @@ fn scenes() -> Outcome {
         let bodies_collide = loaded.scene.bodies.iter().any(|body| body.surface != Surface::None);
         let bound = match loaded.scene.integrator {
             Integrator::Euler => 0.5,
-            // an edge of one coarse link may jump between two depths in another, which is not convex
-            Integrator::Splitting if scene.name == "chain" => 1e-2,
             // thousands of contacts begin and end within a step
             Integrator::Splitting if bodies_collide => 5e-3,
             Integrator::Splitting => 1e-3,

@@ -5,8 +5,8 @@
 //! body.
 //!
 //! # Limits
-//! Contact between bodies acts at particles, against the [`Surface`] of the other body: edge against edge is not detected. Walls
-//! are planes.
+//! Contact between bodies acts at points, against the [`Surface`] of the other body. The points of a body with a mesh surface are
+//! its particles, its sharp edges and points in its large faces ([`ContactPoints`]). Walls are planes.
 //!
 //! # A tour
 //! - [`Shape`]: particles and mass distribution, made from points or a [`Mesh`].
@@ -57,6 +57,7 @@ mod parallel;
 mod restore;
 mod scratch;
 mod shape;
+mod smooth_step;
 mod stability;
 pub mod stage;
 mod state;

@@ -10,6 +10,7 @@ use super::search::{Closest, NO_GROUP, NearestQuery, Query};
 use super::signed_distance::SignedDistance;
 use super::tree::Tree;
 use super::triangle::{FACE, Frame, WIDTH};
+use crate::smooth_step::{smooth_step, smooth_step_slope};
 
 /// A part of the surface in front of a point inside.
 #[derive(Clone, Copy, Debug)]
@@ -22,23 +23,27 @@ pub(crate) struct Exit {
     pub normal: DVec3,
 }
 
-/// Weights of the ways out through faces.
-pub(crate) trait WayWeight {
-    /// The weight of a face with an outward normal, from 0 to 1.
+/// Shares of the ways out through faces.
+pub(crate) trait Share {
+    /// The share of a face with an outward normal, from 0 to 1.
     fn of(&self, normal: DVec3) -> f64;
-    /// Whether all normals in a cone certainly have weight zero.
+    /// Whether all normals in a cone certainly have share zero.
     fn is_zero_in(&self, cone: &NormalCone) -> bool;
 }
 
-/// Finds the triangle with the smallest distance over its weight, among those that have the point behind them.
-struct WeightedQuery<'a, W> {
+/// The cosine of the angle between the way to the closest point of a face and its normal from which on the way is through the
+/// face and not past it.
+const THROUGH: f64 = 0.5;
+
+/// Finds the triangle with the smallest weighted distance.
+struct WeightedQuery<'a, S> {
     point: DVec3,
-    weight: &'a W,
+    share: &'a S,
     cones: &'a NormalCones,
     nearest: NearestQuery,
 }
 
-impl<W: WayWeight> Query for WeightedQuery<'_, W> {
+impl<S: Share> Query for WeightedQuery<'_, S> {
     #[inline(always)]
     fn limit(&self) -> f64 {
         self.nearest.limit()
@@ -46,7 +51,7 @@ impl<W: WayWeight> Query for WeightedQuery<'_, W> {
 
     #[inline(always)]
     fn leaves_out(&self, node: u32, lane: usize) -> bool {
-        self.weight.is_zero_in(self.cones.of_child(node, lane))
+        self.share.is_zero_in(self.cones.of_child(node, lane))
     }
 
     fn visit(&mut self, group: u32, squared: &[f64; WIDTH], tree: &Tree) {
@@ -54,46 +59,54 @@ impl<W: WayWeight> Query for WeightedQuery<'_, W> {
         for (lane, squared) in weighted.iter_mut().enumerate() {
             if *squared <= self.nearest.squared {
                 let frame = tree.frame(group as usize * WIDTH + lane);
-                let weight =
-                    if is_behind(&frame, self.point) { self.weight.of(frame.normal) } else { 0.0 };
-                *squared = if weight > 0.0 { *squared / (weight * weight) } else { f64::INFINITY };
+                let part =
+                    smooth_step(height_over_distance(&frame, self.point, *squared) / THROUGH);
+                let share = if part > 0.0 { part * self.share.of(frame.normal) } else { 0.0 };
+                *squared = if share > 0.0 { *squared / share } else { f64::INFINITY };
             }
         }
         self.nearest.visit(group, &weighted, tree);
     }
 }
 
-/// Whether a point is on the inner side of the plane of a triangle.
-fn is_behind(frame: &Frame, point: DVec3) -> bool {
-    (point - frame.origin).dot(frame.normal) <= 0.0
+/// How far a point is below the plane of a triangle, over its distance from the triangle.
+fn height_over_distance(frame: &Frame, point: DVec3, squared: f64) -> f64 {
+    let height = (frame.origin - point).dot(frame.normal);
+    if squared > 0.0 { height / squared.sqrt() } else { 1.0 }
 }
 
 impl SignedDistance {
-    /// The part of the surface with the smallest weighted distance d/w, among the triangles that have the point behind them;
-    /// w is a function of the outward normal, between 0 and 1. `None` if no weighted distance is within a limit (m). The
-    /// result depends on mesh, point and weights alone.
+    /// The part of the surface with the smallest weighted distance d/√(w s). w, between 0 and 1, depends on the outward
+    /// normal of a triangle. s depends on the angle between the way there and that normal, is 1 up to 60°, and zero from a
+    /// right angle on: in a concave body, most faces are seen from their outer side, and lead nowhere. `None` if no weighted
+    /// distance is within a limit (m). The result is a continuous function of the point, and depends on mesh, point and
+    /// shares alone.
     pub(crate) fn nearest_exit(
         &self,
         point: DVec3,
         within: f64,
-        weight: &impl WayWeight,
+        share: &impl Share,
     ) -> Option<Exit> {
         let nearest = NearestQuery::new(within * within);
-        let mut query = WeightedQuery { point, weight, cones: &self.cones, nearest };
+        let mut query = WeightedQuery { point, share, cones: &self.cones, nearest };
         self.tree.run(self.level, point, NO_GROUP, &mut query);
         let Closest { slot, squared } = query.nearest.found()?;
         let frame = self.tree.frame(slot);
         let closest = frame.closest_point(point);
-        let distance = closest.squared.sqrt();
-        let outward = if closest.feature == FACE || distance == 0.0 {
-            frame.normal
-        } else {
-            frame.world_vector(closest.offset) / -distance
-        };
-        let weighted = squared.sqrt();
-        let factor =
-            if distance > 0.0 { weighted / distance } else { 1.0 / weight.of(frame.normal) };
-        Some(Exit { distance: weighted, gradient: outward * factor, normal: frame.normal })
+        let (distance, weighted) = (closest.squared.sqrt(), squared.sqrt());
+        let normal = frame.normal;
+        if closest.feature == FACE || distance == 0.0 {
+            let gradient = normal / share.of(normal).sqrt();
+            return Some(Exit { distance: weighted, gradient, normal });
+        }
+        let outward = frame.world_vector(closest.offset) / -distance;
+        let cosine = height_over_distance(&frame, point, closest.squared);
+        let x = cosine / THROUGH;
+        let slope = smooth_step_slope(x) / (THROUGH * smooth_step(x));
+        // the derivative of the cosine as the point moves outwards, times the distance
+        let turn = outward * cosine - normal;
+        let gradient = outward * (weighted / distance) + turn * (0.5 * weighted * slope / distance);
+        Some(Exit { distance: weighted, gradient, normal })
     }
 }
 
@@ -104,10 +117,10 @@ mod tests {
     use super::*;
     use crate::Primitive;
 
-    /// Weight above a height of the normal, or below it.
+    /// A share above a height of the normal, or below it.
     struct Above(f64, f64);
 
-    impl WayWeight for Above {
+    impl Share for Above {
         fn of(&self, normal: DVec3) -> f64 {
             self.1 * f64::from(normal.y > self.0)
         }
@@ -118,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_near_the_side_of_a_box_leaves_through_the_face_with_weight() {
+    fn a_point_near_the_side_of_a_box_leaves_through_the_face_with_a_share() {
         let size = DVec3::new(2.0, 2.0, 2.0);
         for divisions in [1, 8] {
             let mesh = Primitive::Box { size, divisions }.mesh().unwrap();
@@ -129,8 +142,8 @@ mod tests {
             let any = distance.nearest_exit(point, 0.1, &Above(-0.5, 1.0)).unwrap();
             assert!((any.distance - 0.001).abs() < 1e-15 && any.gradient == DVec3::X);
             assert!(distance.nearest_exit(point, 0.1, &Above(1.5, 1.0)).is_none());
-            // half the weight is twice the distance
-            let half = distance.nearest_exit(point, 0.1, &Above(0.5, 0.5)).unwrap();
+            // a quarter of the share is twice the distance
+            let half = distance.nearest_exit(point, 0.1, &Above(0.5, 0.25)).unwrap();
             assert!((half.distance - 0.02).abs() < 1e-15 && half.gradient == DVec3::Y * 2.0);
             // behind no face: outside
             assert!(distance.nearest_exit(DVec3::Y * 1.1, 0.2, &Above(0.5, 1.0)).is_none());

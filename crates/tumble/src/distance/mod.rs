@@ -11,6 +11,7 @@ mod normal_cones;
 mod normals;
 mod oriented_surface;
 mod patch;
+mod planes;
 mod ray_queries;
 mod search;
 mod signed_distance;
@@ -18,10 +19,11 @@ mod tree;
 mod triangle;
 
 pub use error::SurfaceError;
-pub(crate) use facing::{Exit, WayWeight};
+pub(crate) use facing::{Exit, Share};
 pub(crate) use normal_cones::NormalCone;
 pub(crate) use oriented_surface::OrientedSurface;
 pub(crate) use patch::Patch;
+pub(crate) use planes::Plane;
 pub use signed_distance::{Nearest, SignedDistance};
 
 #[cfg(test)]

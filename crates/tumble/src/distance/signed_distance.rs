@@ -8,6 +8,7 @@ use super::error::SurfaceError;
 use super::normal_cones::NormalCones;
 use super::normals::{Pseudonormals, pseudonormals};
 use super::oriented_surface::OrientedSurface;
+use super::planes::{Plane, convex_planes};
 use super::ray_queries;
 use super::search::{Closest, NO_GROUP};
 use super::tree::{Extent, Tree};
@@ -20,8 +21,6 @@ const UNUSED: u32 = u32::MAX;
 const ROUNDINGS: f64 = 8.0;
 /// The cosine of the angle between the normals of two faces below which their edge is sharp.
 const SHARP: f64 = 0.5;
-/// A vertex no farther above the plane of a face is in it, in units of the size of the mesh.
-const FLAT: f64 = 1e-9;
 /// The largest coordinate (m) whose square is in the range of doubles.
 const FARTHEST: f64 = 1e140;
 
@@ -78,7 +77,7 @@ pub struct SignedDistance {
     pub(super) patch_width: f64,
     is_turned: bool,
     has_sharp_edges: bool,
-    is_convex: bool,
+    planes: Vec<Plane>,
     holes: usize,
     pub(super) level: Level,
 }
@@ -117,7 +116,7 @@ impl SignedDistance {
             grid: None,
             is_turned: surface.is_turned,
             has_sharp_edges: has_sharp_edges(&surface),
-            is_convex: is_convex(mesh, &surface),
+            planes: convex_planes(&surface, &mesh.vertices),
             holes: surface.holes,
             level: Level::new(),
         };
@@ -303,9 +302,17 @@ impl SignedDistance {
         self.has_sharp_edges
     }
 
-    /// Whether no edge is concave. (Of several convex parts this is true as well.)
-    pub(crate) fn is_convex(&self) -> bool {
-        self.is_convex
+    /// The planes of the faces, if the mesh is convex and has few of them; otherwise none.
+    pub(crate) fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
+    /// The normal of a triangle, by its index in the mesh; zero for one that does not count.
+    pub(crate) fn normal(&self, triangle: u32) -> DVec3 {
+        match self.slots.get(triangle as usize) {
+            Some(&slot) if slot != UNUSED => self.tree.frame(slot as usize).normal,
+            _ => DVec3::ZERO,
+        }
     }
 
     /// Memory in use (bytes).
@@ -315,6 +322,7 @@ impl SignedDistance {
             + size_of::<Pseudonormals>() * self.normals.capacity()
             + size_of::<u32>() * self.slots.capacity()
             + self.cones.memory()
+            + size_of::<Plane>() * self.planes.capacity()
             + self.grid.as_ref().map_or(0, BoundGrid::memory)
     }
 }
@@ -325,15 +333,5 @@ fn has_sharp_edges(surface: &OrientedSurface) -> bool {
             surface.faces[one.face].normal().dot(surface.faces[other.face].normal()) < SHARP
         }
         _ => false,
-    })
-}
-
-fn is_convex(mesh: &Mesh, surface: &OrientedSurface) -> bool {
-    let size = (surface.bounds.high - surface.bounds.low).length();
-    surface.edges().all(|edge| {
-        let [one, other] = edge else { return false };
-        let opposite = surface.faces[other.face].corners[(other.corner + 2) % 3];
-        let [apex, start] = [opposite, one.ends[0]].map(|i| mesh.vertices[i as usize]);
-        (apex - start).dot(surface.faces[one.face].normal()) <= FLAT * size
     })
 }

@@ -4,6 +4,7 @@
 //! kinds of their pairs. Full lanes go through geometry and friction at once, and through forces as soon as all contacts of their
 //! patches are known ([`patch_damping`](super::patch_damping)), while their data is in the cache. Forces are added contact by contact in the order of the lists, so the lanes do not change any result.
 
+mod exits;
 mod lane_filler;
 mod pair_poses;
 mod point_mesh;

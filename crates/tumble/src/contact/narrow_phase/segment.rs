@@ -1,8 +1,7 @@
-//! The minimum of a convex function on a segment: where an edge is deepest in another body.
+//! Where an edge is deepest in another body: the minimum, or all extrema, of a function on a segment.
 //!
 //! The depth is piecewise linear where a body is flat. So the place where the tangents at two points meet is the next one to
-//! try (J. E. Kelley, J. SIAM 8 (1960) 703), and few tries are enough. Of a function that is not convex the result is a local
-//! minimum.
+//! try (J. E. Kelley, J. SIAM 8 (1960) 703), and few tries are enough.
 
 use glam::DVec3;
 
@@ -15,11 +14,25 @@ const NEGLIGIBLE: f64 = 1e-8;
 const TOLERANCE: f64 = 1e-7;
 /// The largest number of tries between the ends.
 const TRIES: usize = 60;
-
 /// How far above the tangents the best try may be, relative to its value, for them to be a bound: the function is convex.
 const SLACK: f64 = 1e-4;
 /// Distance from the minimum at which the derivatives on both sides are taken, in units of the half-length.
 const BESIDE: f64 = 1e-6;
+
+/// The number of parts in which extrema are sought, and how often a part is divided where it may hide more.
+const PARTS: [f64; 2] = [2.0, 8.0];
+const DIVISIONS: u32 = 8;
+/// A change of the slope, per length, up to which a function is taken to be linear, and a relative error of its value.
+const LINEAR: f64 = 3e-3;
+const CLOSE: f64 = 1e-6;
+/// A relative change of the slope up to which a part is taken to be monotonic, and how far, in units of its rise, a monotonic
+/// part may deviate from a parabola.
+const EVEN: f64 = 0.3;
+const UNEVEN: f64 = 0.01;
+/// How far from a kink its sides are tried, in units of the part in which it is.
+const KINK: f64 = 1e-4;
+/// An upper bound of the slope of the function per length.
+const STEEPEST: f64 = 2.5;
 
 /// Value (m) and derivatives of a function at a point.
 #[derive(Clone, Copy, Debug)]
@@ -30,9 +43,9 @@ pub(super) struct Sample {
     pub turn: DVec3,
 }
 
-/// The minimum on a segment.
+/// An extremum on a segment.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Minimum {
+pub(super) struct Extremum {
     /// Vector from the middle of the segment to it (m).
     pub offset: DVec3,
     /// The function plus the centring term (m), below zero.
@@ -41,6 +54,8 @@ pub(super) struct Minimum {
     pub gradient: DVec3,
     /// See [`Sample::turn`].
     pub turn: DVec3,
+    /// Or a maximum.
+    pub is_minimum: bool,
 }
 
 /// A point of the segment.
@@ -54,78 +69,41 @@ struct Try {
     turn: DVec3,
 }
 
-/// The minimum on the segment from `middle` − `half` to `middle` + `half`; `evaluate` returns the function at a vector from
-/// the middle. `None` if it is not below zero. If the function is convex, fewer tries are enough.
-pub(super) fn minimum(
+/// A function on a segment, with the centring term.
+struct OnSegment<F> {
+    /// Vector from the middle to one end (m), and its length.
     half: DVec3,
-    is_convex: bool,
-    mut evaluate: impl FnMut(DVec3) -> Option<Sample>,
-) -> Option<Minimum> {
-    let length = half.length();
-    let centring = CENTRING * length;
-    let mut at = |t: f64| {
-        let Sample { value, gradient, turn } = evaluate(half * t)?;
-        let (value, slope) = (value + 0.5 * centring * t * t, gradient.dot(half) + centring * t);
-        Some(Try { t, value, slope, gradient, turn })
-    };
-    let first = at(0.0)?;
-    if first.slope.abs() <= NEGLIGIBLE * length {
-        return below_zero(single(&first, half));
-    }
-    let end = at(-first.slope.signum())?;
-    if end.slope * first.slope >= 0.0 {
-        return below_zero(single(&end, half));
-    }
-    let (mut low, mut high) = if first.slope < 0.0 { (first, end) } else { (end, first) };
-    let mut best = if end.value < first.value { end } else { first };
-    for number in 0..TRIES {
-        // the tangents at both ends are lower bounds
-        let (t, bound) = crossing(&low, &high);
-        if is_convex && bound > -NEGLIGIBLE * length {
-            return None;
-        }
-        // where the function is curved, tangents at one end alone converge slowly: halve the interval now and then
-        let t = if number % 2 == 1 { 0.5 * (low.t + high.t) } else { t.clamp(low.t, high.t) };
-        let tried = at(t)?;
-        if tried.value < best.value {
-            best = tried;
-        }
-        // even the last one: its gradient counts where the function is curved
-        if tried.slope < 0.0 {
-            low = tried
-        } else {
-            high = tried
-        }
-        let is_found = if is_convex {
-            tried.value - bound <= TOLERANCE * bound.abs()
-        } else {
-            high.t - low.t <= TOLERANCE
-        };
-        if is_found {
-            break;
-        }
-    }
-    if is_convex && (low.turn != DVec3::ZERO || high.turn != DVec3::ZERO) {
-        // the derivative at a distance from the minimum is another, also where the function is linear
-        let (t, _) = crossing(&low, &high);
-        low = at((t - BESIDE).max(low.t))?;
-        high = at((t + BESIDE).min(high.t))?;
-        if low.slope >= 0.0 || high.slope <= 0.0 {
-            return below_zero(single(if low.slope >= 0.0 { &low } else { &high }, half));
-        }
-    }
-    let (t, value) = crossing(&low, &high);
-    let is_bound = (low.t..=high.t).contains(&t) && best.value - value <= SLACK * value.abs();
-    below_zero(if is_bound { crest(&low, &high, half) } else { single(&best, half) })
+    length: f64,
+    /// The function at a vector from the middle.
+    evaluate: F,
 }
 
-fn below_zero(minimum: Minimum) -> Option<Minimum> {
-    (minimum.value < 0.0).then_some(minimum)
-}
+impl<F: FnMut(DVec3) -> Option<Sample>> OnSegment<F> {
+    fn new(half: DVec3, evaluate: F) -> Self {
+        Self { half, length: half.length(), evaluate }
+    }
 
-fn single(point: &Try, half: DVec3) -> Minimum {
-    let Try { t, value, gradient, turn, .. } = *point;
-    Minimum { offset: half * t, value, gradient, turn }
+    fn at(&mut self, t: f64) -> Option<Try> {
+        let Sample { value, gradient, turn } = (self.evaluate)(self.half * t)?;
+        let centring = CENTRING * self.length;
+        let slope = gradient.dot(self.half) + centring * t;
+        Some(Try { t, value: value + 0.5 * centring * t * t, slope, gradient, turn })
+    }
+
+    fn single(&self, point: &Try, is_minimum: bool) -> Extremum {
+        let Try { t, value, gradient, turn, .. } = *point;
+        Extremum { offset: self.half * t, value, gradient, turn, is_minimum }
+    }
+
+    /// The extremum where two tangents meet: as the segment moves it follows both, weighted so that the slope along the
+    /// segment is zero.
+    fn crest(&self, low: &Try, high: &Try) -> Extremum {
+        let (t, value) = crossing(low, high);
+        let weight = high.slope / (high.slope - low.slope);
+        let gradient = low.gradient * weight + high.gradient * (1.0 - weight);
+        let turn = low.turn * weight + high.turn * (1.0 - weight);
+        Extremum { offset: self.half * t, value, gradient, turn, is_minimum: low.slope < 0.0 }
+    }
 }
 
 /// Where the tangents at two points meet, and their value there (m).
@@ -135,14 +113,165 @@ fn crossing(low: &Try, high: &Try) -> (f64, f64) {
     (t, low.value + low.slope * (t - low.t))
 }
 
-/// The minimum where two tangents meet: as the segment moves it follows both, weighted so that the slope along the segment
-/// is zero.
-fn crest(low: &Try, high: &Try, half: DVec3) -> Minimum {
-    let (t, value) = crossing(low, high);
-    let weight = high.slope / (high.slope - low.slope);
-    let gradient = low.gradient * weight + high.gradient * (1.0 - weight);
-    let turn = low.turn * weight + high.turn * (1.0 - weight);
-    Minimum { offset: half * t, value, gradient, turn }
+/// The minimum of a convex function on the segment from −`half` to `half`; `evaluate` returns it at a vector from the middle.
+/// `None` if it is not below zero.
+pub(super) fn minimum(
+    half: DVec3,
+    evaluate: impl FnMut(DVec3) -> Option<Sample>,
+) -> Option<Extremum> {
+    let mut function = OnSegment::new(half, evaluate);
+    let length = function.length;
+    let below_zero = |found: Extremum| (found.value < 0.0).then_some(found);
+    let first = function.at(0.0)?;
+    if first.slope.abs() <= NEGLIGIBLE * length {
+        return below_zero(function.single(&first, true));
+    }
+    let end = function.at(-first.slope.signum())?;
+    if end.slope * first.slope >= 0.0 {
+        return below_zero(function.single(&end, true));
+    }
+    let (mut low, mut high) = if first.slope < 0.0 { (first, end) } else { (end, first) };
+    let mut best = if end.value < first.value { end } else { first };
+    for number in 0..TRIES {
+        // the tangents at both ends are lower bounds
+        let (t, bound) = crossing(&low, &high);
+        if bound > -NEGLIGIBLE * length {
+            return None;
+        }
+        // where the function is curved, tangents at one end alone converge slowly: halve the interval now and then
+        let t = if number % 2 == 1 { 0.5 * (low.t + high.t) } else { t.clamp(low.t, high.t) };
+        let tried = function.at(t)?;
+        if tried.value < best.value {
+            best = tried;
+        }
+        // even the last one: its gradient counts where the function is curved
+        if tried.slope < 0.0 {
+            low = tried
+        } else {
+            high = tried
+        }
+        if tried.value - bound <= TOLERANCE * bound.abs() {
+            break;
+        }
+    }
+    if low.turn != DVec3::ZERO || high.turn != DVec3::ZERO {
+        // the derivative at a distance from the minimum is another, also where the function is linear
+        let (t, _) = crossing(&low, &high);
+        low = function.at((t - BESIDE).max(low.t))?;
+        high = function.at((t + BESIDE).min(high.t))?;
+        if low.slope >= 0.0 || high.slope <= 0.0 {
+            return below_zero(function.single(if low.slope >= 0.0 { &low } else { &high }, true));
+        }
+    }
+    let (t, value) = crossing(&low, &high);
+    let is_bound = (low.t..=high.t).contains(&t) && best.value - value <= SLACK * value.abs();
+    below_zero(if is_bound { function.crest(&low, &high) } else { function.single(&best, true) })
+}
+
+/// Visits the minima below zero on the segment, and the maxima below zero between them. Two minima are certainly told apart
+/// only if they are farther from each other than `size` (m).
+pub(super) fn extrema(
+    half: DVec3,
+    size: f64,
+    evaluate: impl FnMut(DVec3) -> Option<Sample>,
+    visit: impl FnMut(Extremum),
+) {
+    let function = OnSegment::new(half, evaluate);
+    let parts = (2.0 * function.length / size).ceil().clamp(PARTS[0], PARTS[1]);
+    // a function that is nowhere defined has no extrema
+    let _ = Search { function, visit }.run(parts as u32);
+}
+
+/// The search for all extrema.
+struct Search<F, V> {
+    function: OnSegment<F>,
+    visit: V,
+}
+
+impl<F: FnMut(DVec3) -> Option<Sample>, V: FnMut(Extremum)> Search<F, V> {
+    fn run(&mut self, parts: u32) -> Option<()> {
+        let mut low = self.function.at(-1.0)?;
+        if low.slope >= 0.0 {
+            self.found(self.function.single(&low, true));
+        }
+        for part in 1..=parts {
+            let high = self.function.at(2.0 * f64::from(part) / f64::from(parts) - 1.0)?;
+            self.between(&low, &high, DIVISIONS)?;
+            low = high;
+        }
+        if low.slope < 0.0 {
+            self.found(self.function.single(&low, true));
+        }
+        Some(())
+    }
+
+    fn found(&mut self, extremum: Extremum) {
+        if extremum.value < 0.0 {
+            (self.visit)(extremum);
+        }
+    }
+
+    /// Finds the extrema between two points.
+    fn between(&mut self, low: &Try, high: &Try, divisions: u32) -> Option<()> {
+        let is_end = divisions == 0 || high.t - low.t <= TOLERANCE;
+        if self.is_outside(low, high) || self.is_monotonic(low, high) {
+            return Some(());
+        }
+        if is_end {
+            self.closing_in(low, high);
+            return Some(());
+        }
+        let range = high.t - low.t;
+        let (t, _) = crossing(low, high);
+        let beside = KINK * range;
+        if !(t > low.t + beside && t < high.t - beside) {
+            let middle = self.function.at(low.t + 0.5 * range)?;
+            self.between(low, &middle, divisions - 1)?;
+            return self.between(&middle, high, divisions - 1);
+        }
+        // two linear parts have a kink where their tangents meet
+        let [left, right] = [self.function.at(t - beside)?, self.function.at(t + beside)?];
+        let are_monotonic = [self.is_monotonic(low, &left), self.is_monotonic(&right, high)];
+        if are_monotonic[0] || self.between(low, &left, divisions - 1).is_some() {
+            self.closing_in(&left, &right);
+        }
+        if are_monotonic[1] { Some(()) } else { self.between(&right, high, divisions - 1) }
+    }
+
+    /// Visits the extremum between two points that are close to each other, if there is one.
+    fn closing_in(&mut self, low: &Try, high: &Try) {
+        if is_rising(low) == is_rising(high) {
+            return;
+        }
+        let mut crest = self.function.crest(low, high);
+        let (t, _) = crossing(low, high);
+        if !(low.t..=high.t).contains(&t) {
+            let best = if (low.value < high.value) == is_rising(high) { low } else { high };
+            (crest.offset, crest.value) = (self.function.half * best.t, best.value);
+        }
+        self.found(crest);
+    }
+
+    /// Whether the function seems to be monotonic between two points: its slope changes little, and evenly.
+    fn is_monotonic(&self, low: &Try, high: &Try) -> bool {
+        let rise = 0.5 * (low.slope + high.slope) * (high.t - low.t);
+        let change = (high.slope - low.slope).abs();
+        let deviation = (high.value - low.value - rise).abs();
+        let negligible = CLOSE * high.value.abs();
+        is_rising(low) == is_rising(high)
+            && change <= LINEAR * self.function.length + EVEN * low.slope.abs()
+            && deviation <= negligible.max(UNEVEN * rise.abs())
+    }
+
+    /// Whether the function is above zero between two points.
+    fn is_outside(&self, low: &Try, high: &Try) -> bool {
+        let steepest = STEEPEST * self.function.length * (high.t - low.t);
+        low.value > 0.0 && high.value > 0.0 && low.value + high.value > steepest
+    }
+}
+
+fn is_rising(point: &Try) -> bool {
+    point.slope >= 0.0
 }
 
 #[cfg(test)]
@@ -157,8 +286,8 @@ mod tests {
         SignedDistance::new(&mesh).unwrap()
     }
 
-    fn deepest(cube: &SignedDistance, middle: DVec3, half: DVec3) -> Option<Minimum> {
-        minimum(half, true, |offset| {
+    fn deepest(cube: &SignedDistance, middle: DVec3, half: DVec3) -> Option<Extremum> {
+        minimum(half, |offset| {
             let nearest = cube.query(middle + offset, 0, f64::INFINITY)?;
             Some(Sample { value: nearest.distance, gradient: nearest.gradient, turn: DVec3::ZERO })
         })
