@@ -87,8 +87,10 @@ fn warnings(s: &Summary, relative_residual: f64) -> Vec<String> {
     if relative_residual.abs() > 0.01 {
         let remedy = if s.integrator == "euler" {
             "use integrator = \"splitting\" or a smaller dt"
-        } else {
+        } else if s.bodies == 1 {
             "use a smaller dt or set energy_tolerance"
+        } else {
+            "use a smaller dt"
         };
         let percent = 100.0 * relative_residual;
         warnings.push(format!("the residual is {percent:+.2} % of the energy: {remedy}"));

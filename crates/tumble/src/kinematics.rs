@@ -42,18 +42,35 @@ impl<'a> Kinematics<'a> {
         }
     }
 
-    /// The same pose with the velocities half of the time `h` (s) earlier in flight; v' = g − γ v and, without drag,
-    /// ω' = −I⁻¹ (ω × L).
-    pub fn in_mid_flight(&self, model: &Model, state: &BodyState, h: f64) -> Self {
-        let (body, half) = (self.body, 0.5 * h);
-        let rate = model.velocity_damping_stiffness / body.particle_mass();
-        let gyroscopic = self.angular_velocity.cross(state.angular_momentum);
+    /// The same pose with the velocities at a `time` (s) earlier in flight, to first order. M v' = F + M g and, in the world
+    /// frame, I ω' = τ − ω × L, with force and torque of the drag.
+    pub fn earlier(&self, model: &Model, state: &BodyState, time: f64) -> Self {
+        let (force, torque) = self.drag(model);
+        let torque = torque - self.angular_velocity.cross(state.angular_momentum);
+        let is_turning_evenly = torque == DVec3::ZERO;
+        let acceleration = if is_turning_evenly {
+            torque
+        } else {
+            self.body.angular_velocity(self.rotation, torque)
+        };
         Self {
-            velocity: self.velocity - (model.gravity - self.velocity * rate) * half,
-            angular_velocity: self.angular_velocity
-                + body.angular_velocity(self.rotation, gyroscopic) * half,
+            velocity: self.velocity - (model.gravity + force / self.body.mass) * time,
+            angular_velocity: self.angular_velocity - acceleration * time,
             ..*self
         }
+    }
+
+    /// Force and torque of the drag of the medium: F = −c (N v + ω × S) and τ = −c (S × v + G ω).
+    fn drag(&self, model: &Model) -> (DVec3, DVec3) {
+        let (c, moments) = (model.velocity_damping_stiffness, self.body.shape.moments());
+        if c == 0.0 {
+            return (DVec3::ZERO, DVec3::ZERO);
+        }
+        let Self { rotation, velocity, angular_velocity: omega, .. } = *self;
+        let first = rotation * moments.first;
+        let second = rotation * (moments.second * (rotation.transpose() * omega));
+        let force = velocity * moments.count + omega.cross(first);
+        (force * -c, (first.cross(velocity) + second) * -c)
     }
 
     /// Power that a wrench takes from the body, −(F·v + τ·ω) (W).

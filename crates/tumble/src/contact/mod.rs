@@ -46,4 +46,4 @@ pub(crate) use self::body_contacts::BodyContacts;
 pub(crate) use self::pair::{
     can_touch, contact_kinds, contact_law, sphere_radius, tunnelling_limit,
 };
-pub(crate) use self::since_kick::SinceKick;
+pub(crate) use self::since_kick::{Kick, SinceKick};

@@ -3,6 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 
 use super::since_kick::SinceKick;
+use crate::kinematics::Kinematics;
 use crate::{BodyModel, BodyState, Integrator, Model, Motion};
 
 /// Pose of a body, the velocities that its contact forces see, and how far it has moved.
@@ -56,14 +57,14 @@ impl BodyPose {
     /// The pose of a state; its path length begins here.
     pub fn new(model: &Model, index: usize, state: &BodyState, since_kick: &SinceKick) -> Self {
         let body = &model.bodies[index];
-        let rotation = DMat3::from_quat(state.orientation);
+        let kinematics = Kinematics::new(body, state);
+        let Kinematics { rotation, angular_velocity: omega, .. } = kinematics;
         let surface_velocity = match &body.motion {
             Motion::Prescribed(prescribed) => rotation * prescribed.surface_velocity,
             Motion::Free => DVec3::ZERO,
         };
-        let omega = body.angular_velocity(rotation, state.angular_momentum);
         let [drift_velocity, drift_angular_velocity] =
-            mid_flight(model, body, state, rotation, omega, since_kick);
+            mid_flight(model, &kinematics, state, since_kick);
         Self {
             drift_velocity,
             drift_angular_velocity,
@@ -111,48 +112,23 @@ impl BodyPose {
 /// second order; those from the velocities at its end would be of first order.
 fn mid_flight(
     model: &Model,
-    body: &BodyModel,
+    kinematics: &Kinematics,
     state: &BodyState,
-    rotation: DMat3,
-    omega: DVec3,
     since_kick: &SinceKick,
 ) -> [DVec3; 2] {
-    let (velocity, half) = (state.velocity, 0.5 * since_kick.duration);
+    let Kinematics { velocity, angular_velocity, .. } = *kinematics;
+    let half = 0.5 * since_kick.duration;
     if model.integrator != Integrator::Splitting {
-        return [velocity, omega];
+        return [velocity, angular_velocity];
     }
-    if let Motion::Prescribed(prescribed) = &body.motion {
+    if let Motion::Prescribed(prescribed) = &kinematics.body.motion {
         let change = prescribed.oscillation.as_ref().map_or(DVec3::ZERO, |oscillation| {
             oscillation.at(since_kick.time).1 - oscillation.at(since_kick.time - half).1
         });
-        return [velocity - change, omega];
+        return [velocity - change, angular_velocity];
     }
-    let (force, torque) = drag(model, body, rotation, velocity, omega);
-    // M v' = F + M g and, in the world frame, I ω' = τ − ω × L
-    let velocity = velocity - (model.gravity + force / body.mass) * half;
-    let torque = torque - omega.cross(state.angular_momentum);
-    let is_turning_evenly = torque == DVec3::ZERO;
-    let acceleration =
-        if is_turning_evenly { torque } else { body.angular_velocity(rotation, torque) };
-    [velocity, omega - acceleration * half]
-}
-
-/// Force and torque of the drag of the medium: F = −c (N v + ω × S) and τ = −c (S × v + G ω).
-fn drag(
-    model: &Model,
-    body: &BodyModel,
-    rotation: DMat3,
-    velocity: DVec3,
-    omega: DVec3,
-) -> (DVec3, DVec3) {
-    let (c, moments) = (model.velocity_damping_stiffness, body.shape.moments());
-    if c == 0.0 {
-        return (DVec3::ZERO, DVec3::ZERO);
-    }
-    let first = rotation * moments.first;
-    let second = rotation * (moments.second * (rotation.transpose() * omega));
-    let force = velocity * moments.count + omega.cross(first);
-    (force * -c, (first.cross(velocity) + second) * -c)
+    let Kinematics { velocity, angular_velocity, .. } = kinematics.earlier(model, state, half);
+    [velocity, angular_velocity]
 }
 
 /// A bound on the rounding error of the position of a point of a body (m).

@@ -4,6 +4,15 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 
 use crate::{Integrator, Model};
 
+/// A kick by wall contacts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kick<'a> {
+    /// The time over which it acts (s).
+    pub length: f64,
+    /// The flight before it.
+    pub since_last: &'a SinceKick,
+}
+
 /// The flight of all bodies since the latest kick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SinceKick {

@@ -18,8 +18,8 @@ use glam::DMat3;
 
 use super::drift::drift_body;
 use super::kick::kick_body;
-use crate::contact::SinceKick;
 use crate::contact::wall::{self, WallContactOutput, WallContacts, wall_contact_forces};
+use crate::contact::{Kick, SinceKick};
 use crate::kinematics::Kinematics;
 use crate::{Batch, BodyForces, BodyModel, BodyState, FrictionSpring, Model, RunTotals, Wrench};
 
@@ -266,7 +266,8 @@ impl BodyStepper<'_> {
             contacts: self.contacts,
         };
         let (model, body) = (self.model, self.body);
-        wall_contact_forces(model, body, self.state, self.springs, output, h, since_kick);
+        let kick = Kick { length: h, since_last: since_kick };
+        wall_contact_forces(model, body, self.state, self.springs, output, kick);
         let totals = kick_body(self.body, self.state, self.forces, h);
         let contact = self.forces.contact();
         self.impulse += Wrench { force: contact.force * h, torque: contact.torque * h };

@@ -1,8 +1,8 @@
 //! Line 9 of the basic system and beyond: contact of particles with walls.
 
 use crate::Batch;
-use crate::contact::SinceKick;
 use crate::contact::wall::{WallContactOutput, WallContacts, wall_contact_forces};
+use crate::contact::{Kick, SinceKick};
 use crate::kinematics::Kinematics;
 
 /// Sets the wall contact forces on every body that may touch a wall, for a kick over the time `h` (s): dashpots see the mean
@@ -15,6 +15,7 @@ pub fn wall_contact(batch: &mut Batch, h: f64) {
     let Batch {
         model, first, bodies, springs, may_touch, forces, next_springs, workspaces, ..
     } = batch;
+    let kick = Kick { length: h, since_last: &since_kick };
     let predicts = model.has_body_contact && h != 0.0;
     let workspace = &mut workspaces[0];
     if predicts {
@@ -30,11 +31,11 @@ pub fn wall_contact(batch: &mut Batch, h: f64) {
             next_springs.clear();
         } else if predicts {
             let contacts = &mut workspace.wall_contacts[index];
-            contacts.predict(model, body, state, springs, (forces, next_springs), (h, &since_kick));
+            contacts.predict(model, body, state, springs, (forces, next_springs), kick);
         } else {
             let contacts = &mut workspace.contacts;
             let output = WallContactOutput { forces, next_springs, contacts };
-            wall_contact_forces(model, body, state, springs, output, h, &since_kick);
+            wall_contact_forces(model, body, state, springs, output, kick);
         }
     }
 }

@@ -10,7 +10,7 @@ use fearless_simd::{Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::near_wall::{NearWall, WallPatch};
-use crate::contact::SinceKick;
+use crate::contact::Kick;
 use crate::contact::law::coulomb::{dashpot_fraction, slip};
 use crate::contact::law::linear::LinearSpringDashpot;
 use crate::contact::law::{NormalForce, NormalLaw};
@@ -60,22 +60,21 @@ struct WallContactLanes {
 
 impl FrictionContacts {
     /// Lists the contacts of a body with walls that have friction. `old` are its springs so far. The velocities, together with the
-    /// time `h` (s) since the latest kick, tell which particles have touched since then.
+    /// time since the latest kick, tell which particles have touched since then.
     pub fn detect(
         &mut self,
         model: &Model,
         kinematics: &Kinematics,
         old: &[FrictionSpring],
-        h: f64,
-        since_kick: &SinceKick,
+        kick: Kick,
     ) {
         self.contacts.clear();
         self.laws.clear();
-        (self.released, self.is_first_kick) = (0.0, since_kick.is_first);
+        (self.released, self.is_first_kick) = (0.0, kick.since_last.is_first);
         if !kinematics.body.has_friction && old.is_empty() {
             return;
         }
-        let mut springs = OldSprings { kinematics, model, old, since_kick, released: 0.0, h };
+        let mut springs = OldSprings { kinematics, model, old, kick, released: 0.0 };
         let particles = kinematics.body.shape.particles();
         for (index, (wall, law)) in model.walls.iter().zip(&kinematics.body.contacts).enumerate() {
             let near = NearWall::new(wall, kinematics).filter(|_| law.friction > 0.0);
@@ -89,7 +88,7 @@ impl FrictionContacts {
             }
             let patch = dispatch!(kinematics.level, simd => springs.load(simd, index as u32, &near, slots, contacts));
             if law.depends_on_patch() && patch.depth > 0.0 {
-                let factor = patch.touch_factor(kinematics, near.normal, h);
+                let factor = patch.touch_factor(kinematics, near.normal, kick.length);
                 contacts[start..].iter_mut().for_each(|lanes| lanes.touch = [factor; LANES]);
             }
             self.laws.push(near.law_in_patch(law, &patch, kinematics));
@@ -161,10 +160,8 @@ struct OldSprings<'a> {
     kinematics: &'a Kinematics<'a>,
     model: &'a Model,
     old: &'a [FrictionSpring],
-    since_kick: &'a SinceKick,
+    kick: Kick<'a>,
     released: f64,
-    /// Time since the latest kick (s).
-    h: f64,
 }
 
 impl OldSprings<'_> {
@@ -237,7 +234,8 @@ impl OldSprings<'_> {
         lanes.arm = arm.store();
         let u = Vec3x8::splat(simd, kinematics.velocity)
             + Vec3x8::splat(simd, kinematics.angular_velocity).cross(arm);
-        let approach = u.dot(Vec3x8::splat(simd, near.normal)) * f64x8::splat(simd, -self.h);
+        let approach =
+            u.dot(Vec3x8::splat(simd, near.normal)) * f64x8::splat(simd, -self.kick.length);
         let depth = f64x8::simd_from(simd, lanes.depth);
         lanes.touch = touch_factors(simd, depth, approach).into();
         lanes.anchor = (Vec3x8::splat(simd, kinematics.position) + arm).store();
@@ -249,7 +247,7 @@ impl OldSprings<'_> {
         let arm = vector(&lanes.arm, lane);
         let u = kinematics.velocity + kinematics.angular_velocity.cross(arm);
         let closing = -u.dot(normal);
-        let duration = self.since_kick.new_contact_duration(lanes.depth[lane], closing);
+        let duration = self.kick.since_last.new_contact_duration(lanes.depth[lane], closing);
         let anchor = vector(&lanes.anchor, lane) - (u + normal * closing) * duration;
         set(&mut lanes.anchor, lane, anchor);
     }

@@ -16,7 +16,7 @@ mod tests;
 
 use self::frictionless::NormalSprings;
 use self::near_wall::NearWall;
-use crate::contact::SinceKick;
+use crate::contact::Kick;
 use crate::kinematics::Kinematics;
 use crate::{BodyForces, BodyModel, BodyState, FrictionSpring, Model, Surface, WallPlane};
 
@@ -39,34 +39,32 @@ pub(crate) struct WallContacts {
     friction: FrictionContacts,
 }
 
-/// Computes the wall contact forces on one body, for a kick over the time `h` (s); `springs` are its friction springs so far.
+/// Computes the wall contact forces on one body, for one kick; `springs` are its friction springs so far.
 pub(crate) fn wall_contact_forces(
     model: &Model,
     body: &BodyModel,
     state: &BodyState,
     springs: &[FrictionSpring],
     output: WallContactOutput,
-    h: f64,
-    since_kick: &SinceKick,
+    kick: Kick,
 ) {
     let WallContactOutput { forces, next_springs, contacts } = output;
     next_springs.clear();
-    let time = (h, since_kick);
-    let Some(kinematics) = contacts.first_evaluation(model, body, state, springs, forces, time)
+    let Some(kinematics) = contacts.first_evaluation(model, body, state, springs, forces, kick)
     else {
         return;
     };
-    if h != 0.0 && forces.max_depth > 0.0 && body.is_damped {
+    if kick.length != 0.0 && forces.max_depth > 0.0 && body.is_damped {
         // a second evaluation at the mid-kick velocities of the first makes dashpots second order
-        let mid_kick = kinematics.at_mid_kick(&forces.contact(), h);
+        let mid_kick = kinematics.at_mid_kick(&forces.contact(), kick.length);
         contacts.evaluate(model, &mid_kick, forces);
     }
     contacts.friction.store_springs(&kinematics, next_springs);
 }
 
 impl WallContacts {
-    /// The first of two evaluations: forces that serve to predict the velocities in the middle of a kick, for bodies that also touch each other;
-    /// `time` is the length of the kick (s) and the flight before it. `springs` are the friction springs of the body so far.
+    /// The first of two evaluations: forces that serve to predict the velocities in the middle of a kick, for bodies that also
+    /// touch each other. `springs` are the friction springs of the body so far.
     pub fn predict(
         &mut self,
         model: &Model,
@@ -74,10 +72,10 @@ impl WallContacts {
         state: &BodyState,
         springs: &[FrictionSpring],
         (forces, next_springs): (&mut BodyForces, &mut Vec<FrictionSpring>),
-        time: (f64, &SinceKick),
+        kick: Kick,
     ) {
         next_springs.clear();
-        if let Some(kinematics) = self.first_evaluation(model, body, state, springs, forces, time) {
+        if let Some(kinematics) = self.first_evaluation(model, body, state, springs, forces, kick) {
             self.friction.store_springs(&kinematics, next_springs);
         }
     }
@@ -104,7 +102,7 @@ impl WallContacts {
         state: &BodyState,
         springs: &[FrictionSpring],
         forces: &mut BodyForces,
-        (h, since_kick): (f64, &SinceKick),
+        kick: Kick,
     ) -> Option<Kinematics<'a>> {
         forces.clear_contact();
         let is_far = |wall: &WallPlane| wall.depth(state.position) < -body.bounding_radius();
@@ -113,9 +111,9 @@ impl WallContacts {
         }
         let kinematics = Kinematics::new(body, state);
         // over the time between two kicks a body at rest has no velocity, so that the prediction leaves it at rest
-        let mid_flight = kinematics.in_mid_flight(model, state, h);
-        self.normal_springs.update(model, &mid_flight, h);
-        self.friction.detect(model, &mid_flight, springs, h, since_kick);
+        let mid_flight = kinematics.earlier(model, state, 0.5 * kick.length);
+        self.normal_springs.update(model, &mid_flight, kick.length);
+        self.friction.detect(model, &mid_flight, springs, kick);
         self.evaluate(model, &mid_flight, forces);
         Some(kinematics)
     }

@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec3};
 
 use super::*;
+use crate::contact::SinceKick;
 use crate::lanes::levels;
 use crate::{Body, Damping, Integrator, Material, Mesh, Shape, WallBox, World, WorldBuilder};
 
@@ -47,7 +48,8 @@ fn wall_contact_has_the_same_bits_at_every_simd_level() {
             contacts.normal_springs.update(model, &kinematics, model.dt);
             let since_kick = SinceKick::none(state.time);
             let old = &state.springs[0];
-            contacts.friction.detect(model, &kinematics, old, model.dt, &since_kick);
+            let kick = Kick { length: model.dt, since_last: &since_kick };
+            contacts.friction.detect(model, &kinematics, old, kick);
             contacts.evaluate(model, &kinematics, &mut forces);
             contacts.friction.store_springs(&kinematics, &mut springs);
             (forces, springs, elastic_energy(model, &kinematics, &state.springs[0]))
