@@ -42,7 +42,7 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
         ("results", folder.path().display().to_string()),
         ("animation", folder.path().join("motion.html").display().to_string()),
     ];
-    rows.extend(finished.notes.iter().map(|note| ("note", (*note).to_owned())));
+    rows.extend(finished.notes.iter().map(|note| ("note", note.clone())));
     let warnings = warnings(s, relative).into_iter().chain(finished.warnings.iter().cloned());
     rows.extend(warnings.map(|warning| ("warning", warning)));
     columns(&rows)

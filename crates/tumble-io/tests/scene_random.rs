@@ -269,10 +269,11 @@ proptest! {
     fn scenes_with_other_numbers(text in renumbered()) {
         let loaded = load(&text, &[]);
         if let Ok(Loaded { mut world, .. }) = load(&text, &[]) {
-            // it may diverge, and then says so
+            // it may diverge, or bodies may be deep in each other, and then it says so
             for _ in 0..3 {
                 if let Err(error) = world.step() {
-                    prop_assert!(error.to_string().contains("diverged"));
+                    let message = error.to_string();
+                    prop_assert!(message.contains("diverged") || message.contains("stopped"));
                     break;
                 }
             }

@@ -162,7 +162,7 @@ impl std::fmt::Display for StepError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { step, time, body, particle, quantity, value, other, dt, body_depth } = self;
         if let Some(depth) = body_depth {
-            return write!(f, "the simulation diverged at step {step} (t = {time} s): {depth}");
+            return write!(f, "the simulation was stopped at step {step} (t = {time} s): {depth}");
         }
         let whose = match particle {
             Some(particle) => format!("particle {particle} of body \"{body}\""),

@@ -95,7 +95,7 @@ pub use shape::{
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::MouseSpring;
 pub use state::{BodyState, ContactKind, FrictionSpring, PairSpring, RunTotals, State};
-pub use static_load::{StaticLoad, static_loads};
+pub use static_load::{SoftSprings, StaticLoad, static_loads};
 pub use surface::{Overlaps, Surface};
 pub use wall::{WallBox, WallPlane};
 pub use world::{BodyView, World};

@@ -74,8 +74,10 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
     let meets = if model.has_body_contact { 2.0 * per_mass * neighbours } else { 0.0 };
     let between = |[normal, tangential]: [f64; 2]| meets * normal.max(tangential);
     let square = at_walls(&springs).max(between(springs(&law)));
-    let half_rate =
-        0.5 * at_walls(&|law| dashpots(law, mass)).max(between(dashpots(&law, 0.5 * mass)));
+    // more points in a patch share its dashpot, which grows with the root of their number
+    let sharing = if body.has_spheres() { 1.0 } else { neighbours };
+    let between_bodies = between(dashpots(&law, 0.5 * mass / sharing));
+    let half_rate = 0.5 * at_walls(&|law| dashpots(law, mass)).max(between_bodies);
     // (2/ω)(√(1 + ζ²) − ζ), without cancellation and valid for ω = 0
     2.0 / ((square + half_rate * half_rate).sqrt() + half_rate)
 }

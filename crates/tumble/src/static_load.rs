@@ -3,15 +3,36 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::body_depth::round_up;
 use crate::contact::deep_contact::LARGEST_DEPTH;
 use crate::contact::{contact_kinds, contact_law, sphere_radius, tunnelling_limit};
-use crate::{BodyModel, ContactKind, Model, State};
+use crate::{BodyModel, BodyState, ContactKind, Model, State};
 
 /// With more bodies, what lies on what is not looked at: it would take time with the square of their number.
 const MAX_BODIES: usize = 2000;
+/// The number of bodies from which on a column bends rather than tilts as one.
+const BENDING: f64 = 3.9;
+/// Bodies closer than this stand on each other, in units of the size of the upper one.
+const GAP: f64 = 0.05;
+/// The second moment of an evenly loaded square over that of its corners.
+const SPREAD: f64 = 1.0 / 3.0;
+
+/// What springs that are too soft do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SoftSprings {
+    /// They are pressed deeper than a limit (m).
+    TooDeep {
+        /// The limit (m).
+        limit: f64,
+    },
+    /// A column of this many bodies leans and falls over.
+    MayLean {
+        /// The number of bodies.
+        bodies: usize,
+    },
+}
 
 /// Springs that are too soft for the weight on them.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,32 +43,43 @@ pub struct StaticLoad {
     pub support: Option<String>,
     /// Weight of the body and of all bodies above it (N).
     pub weight: f64,
+    /// Their mass (kg).
+    pub mass: f64,
     /// The depth at which the springs carry this weight (m).
     pub depth: f64,
-    /// The largest depth that is tolerable (m).
-    pub limit: f64,
-    /// A stiffness at which the depth is half of that (N/m).
+    /// What they do.
+    pub effect: SoftSprings,
+    /// A stiffness at which the depth, or the weight, is half of what is too much (N/m).
     pub sufficient_stiffness: f64,
 }
 
 impl std::fmt::Display for StaticLoad {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { body, support, weight, depth, limit, sufficient_stiffness } = self;
+        let Self { body, support, weight, mass, depth, effect, sufficient_stiffness } = self;
         let support = match support {
             Some(support) => format!("body \"{support}\""),
             None => "a wall".to_owned(),
         };
         write!(
             f,
-            "the springs are too soft: the weight of body \"{body}\" and of what is above it, {weight:.1e} N, would press it \
-             {depth:.2e} m into {support}, and {limit:.2e} m is the most; use a `collision_stiffness` of \
-             {sufficient_stiffness:.0e} N/m or more"
-        )
+            "the springs are too soft: the weight of body \"{body}\" and of what is above it, {weight:.1e} N ({mass:.3} kg), \
+             would press it {depth:.2e} m into {support}, "
+        )?;
+        match effect {
+            SoftSprings::TooDeep { limit } => write!(f, "and {limit:.2e} m is the most")?,
+            SoftSprings::MayLean { bodies } => {
+                write!(f, "and a column of {bodies} would lean on it and fall over")?;
+            }
+        }
+        write!(f, "; use a `collision_stiffness` of {sufficient_stiffness:.0e} N/m or more")
     }
 }
 
 /// Free bodies whose weight, with that of the bodies above them, would press the springs of a wall or body below them too
-/// deep: three quarters of the bounding radius for a wall, and of what they would have to pass through for a body.
+/// deep: three quarters of the bounding radius for a wall, and of what they would have to pass through for a body. And columns
+/// of bodies that would lean: springs that resist a tilt with c (N·m) carry the weight W of n bodies at a mean height h above
+/// them if W h < c min(1, 3.9/n). For one body that is the balance of an inverted pendulum; for many, as in a column that
+/// bends under its own weight, q H³ < 7.84 E I (A. G. Greenhill, Proc. Camb. Phil. Soc. 4 (1881) 65).
 ///
 /// The estimate is a low one: as many particles share the load as lie in the largest face across the principal axes.
 pub fn static_loads(model: &Model, state: &State) -> Vec<StaticLoad> {
@@ -59,26 +91,115 @@ pub fn static_loads(model: &Model, state: &State) -> Vec<StaticLoad> {
     let mut patches = Patches::default();
     let free = (0..model.bodies.len()).filter(|&index| model.bodies[index].is_free());
     let load = |index: usize| {
-        let (above, below) = column(model, state, index, up);
-        let mass: f64 = above.iter().chain([&index]).map(|&i| model.bodies[i].mass).sum();
-        let supports = wall_supports(model, index, up, &mut patches).into_iter().chain(
-            below.iter().filter_map(|&other| body_support(model, index, other, &mut patches)),
-        );
+        let (mut column, below) = column(model, state, index, up);
+        column.push(index);
+        let mass: f64 = column.iter().map(|&i| model.bodies[i].mass).sum();
+        let on_bodies = below.iter().filter_map(|&i| body_support(model, index, i, &mut patches));
+        let on_bodies: Vec<_> = on_bodies.collect();
+        let on_walls = wall_supports(model, index, up, &mut patches);
         // of several supports, the one that is pressed deepest relative to its limit
+        let supports = on_walls.into_iter().chain(on_bodies);
         let pressed = supports.map(|support| (gravity * mass / support.stiffness, support));
-        let pressed = pressed.filter(|(depth, support)| *depth > support.limit);
         let share = |(depth, support): &(f64, Support)| depth / support.limit;
         let (depth, support) = pressed.max_by(|a, b| share(a).total_cmp(&share(b)))?;
+        let standing = Standing::new(model, state, &column, index, up);
+        let lean = standing.lean() * depth * standing.mass / (mass * support.spread);
+        let too_deep = SoftSprings::TooDeep { limit: support.limit };
+        let may_lean = SoftSprings::MayLean { bodies: standing.bodies };
+        let effects = [(depth / support.limit, too_deep), (lean, may_lean)];
+        let (excess, effect) = effects.into_iter().find(|(excess, _)| *excess > 1.0)?;
         Some(StaticLoad {
             body: model.names[index].clone(),
             support: support.body.map(|body| model.names[body].clone()),
             weight: gravity * mass,
+            mass,
             depth,
-            limit: support.limit,
-            sufficient_stiffness: round_up(2.0 * support.of_point * depth / support.limit),
+            effect,
+            sufficient_stiffness: round_up(2.0 * support.of_point * excess),
         })
     };
     free.filter_map(load).collect()
+}
+
+/// A column of bodies that stand on each other.
+struct Standing {
+    bodies: usize,
+    /// Mass (kg) and height of the centre of mass above the foot (m).
+    mass: f64,
+    height: f64,
+    /// The smaller second moment of the foot, per particle (m²).
+    second_moment: f64,
+}
+
+impl Standing {
+    /// The bodies of a column that stand on body `foot` without gaps.
+    fn new(model: &Model, state: &State, column: &[usize], foot: usize, up: DVec3) -> Self {
+        let level = |index: usize| Level::new(&model.bodies[index], &state.bodies[index], up);
+        let lowest = level(foot);
+        let second_moment = lowest.second_moment(up);
+        let (mut mass, mut moment, mut top) = (0.0, 0.0, lowest.bottom);
+        let mut above: Vec<(f64, usize)> =
+            column.iter().map(|&index| (state.bodies[index].position.dot(up), index)).collect();
+        above.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut bodies = 0;
+        for (height, index) in above {
+            let next = level(index);
+            if next.bottom > top + GAP * model.bodies[index].extent {
+                break;
+            }
+            mass += model.bodies[index].mass;
+            moment += model.bodies[index].mass * (height - lowest.bottom);
+            top = top.max(next.top);
+            bodies += 1;
+        }
+        Self { bodies, mass, height: moment / mass, second_moment }
+    }
+
+    /// W h/c max(1, n/3.9) over the depth at which the springs carry the weight W (1/m).
+    fn lean(&self) -> f64 {
+        // one body may stand on a point, and so may a column of spheres
+        if self.bodies < 2 || self.second_moment <= 0.0 {
+            return 0.0;
+        }
+        self.height * (self.bodies as f64 / BENDING).max(1.0) / self.second_moment
+    }
+}
+
+/// The particles of a body, as high as they are.
+struct Level {
+    places: Vec<DVec3>,
+    extent: f64,
+    bottom: f64,
+    top: f64,
+}
+
+impl Level {
+    fn new(body: &BodyModel, state: &BodyState, up: DVec3) -> Self {
+        let rotation = DMat3::from_quat(state.orientation);
+        let particles = body.shape.particles().iter();
+        let places: Vec<DVec3> = particles.map(|r| state.position + rotation * r).collect();
+        let heights = || places.iter().map(|r| r.dot(up));
+        let radius = sphere_radius(body);
+        let bottom = heights().fold(f64::INFINITY, f64::min) - radius;
+        let top = heights().fold(f64::NEG_INFINITY, f64::max) + radius;
+        Self { extent: body.extent, bottom, top, places }
+    }
+
+    /// The smaller second moment of the lowest particles across the vertical, per particle (m²).
+    fn second_moment(&self, up: DVec3) -> f64 {
+        let lowest = self.places.iter().map(|r| r.dot(up)).fold(f64::INFINITY, f64::min);
+        let thin = lowest + 0.1 * self.extent;
+        let foot: Vec<DVec3> = self.places.iter().filter(|r| r.dot(up) < thin).copied().collect();
+        let count = foot.len() as f64;
+        let mean = foot.iter().sum::<DVec3>() / count;
+        let across = up.any_orthonormal_pair();
+        let moment = |a: DVec3, b: DVec3| {
+            foot.iter().map(|r| (*r - mean).dot(a) * (*r - mean).dot(b)).sum::<f64>() / count
+        };
+        let [xx, xy, yy] =
+            [(across.0, across.0), across, (across.1, across.1)].map(|(a, b)| moment(a, b));
+        0.5 * (xx + yy) - (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt()
+    }
 }
 
 /// What could carry a body.
@@ -90,6 +211,8 @@ struct Support {
     stiffness: f64,
     /// The largest depth that is tolerable (m).
     limit: f64,
+    /// Second moment of the area that carries, in units of that of the particles around it.
+    spread: f64,
 }
 
 /// The walls that face upwards.
@@ -101,6 +224,7 @@ fn wall_supports(model: &Model, index: usize, up: DVec3, patches: &mut Patches) 
         of_point,
         stiffness: of_point * points,
         limit: LARGEST_DEPTH * body.extent,
+        spread: 1.0,
     };
     let facing = walls.filter(|(wall, _)| wall.normal.dot(up) > 0.5);
     facing.map(|(_, law)| support(law.stiffness, patches.largest(body))).collect()
@@ -128,7 +252,7 @@ fn body_support(
         limit = limit.max(LARGEST_DEPTH * tunnelling_limit(a, b, kind));
         of_point = of_point.or(Some(law.stiffness));
     }
-    Some(Support { body: Some(other), of_point: of_point?, stiffness, limit })
+    Some(Support { body: Some(other), of_point: of_point?, stiffness, limit, spread: SPREAD })
 }
 
 /// The largest patches of bodies, computed once for identical bodies.
@@ -181,7 +305,9 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
-    use crate::{Body, DMat3, Mesh, Shape, Surface, WallPlane, World};
+    use crate::{
+        Body, DMat3, MassModel, Mesh, Primitive, Sampling, Shape, Surface, WallPlane, World,
+    };
 
     const RADIUS: f64 = 0.1;
 
@@ -209,12 +335,31 @@ mod tests {
         let lower = &found[0];
         assert_eq!((lower.body.as_str(), &lower.support), ("body 0", &None));
         assert!((lower.depth - 0.101).abs() < 1e-12, "{lower:?}");
-        assert!((lower.limit - 0.075).abs() < 1e-8, "{lower:?}");
+        let SoftSprings::TooDeep { limit } = lower.effect else { panic!("{lower:?}") };
+        assert!((limit - 0.075).abs() < 1e-8, "{lower:?}");
         assert_eq!(lower.sufficient_stiffness, 3e4);
         assert!(lower.to_string().contains("of 3e4 N/m or more"), "{lower}");
         // beside each other they rest on the floor
         let beside = |mass: f64| ball(mass, 0.1).position(DVec3::new(0.5, 0.1, 0.0));
         assert_eq!(loads(vec![ball(1.0, 0.1), beside(70.0)]), []);
         assert_eq!(loads(vec![ball(1.0, 0.1), beside(80.0)])[0].body, "body 1");
+    }
+
+    /// Cubes of 0.2 m and 1 kg on springs of 1e4 N/m: ten stand, fifteen lean and fall over.
+    #[test]
+    fn a_high_column_on_soft_springs_leans() {
+        let cube = Primitive::Box { size: DVec3::splat(0.2), divisions: 1 }.mesh().unwrap();
+        let shape = Shape::from_mesh(&cube, Sampling::Vertices, MassModel::Solid).unwrap();
+        let shape = std::sync::Arc::new(shape);
+        let stack = |count: u32| {
+            let height = |i: u32| DVec3::Y * (0.1 + 0.2 * f64::from(i));
+            let body = |i| Body::new(shape.clone()).mass(1.0).position(height(i));
+            loads((0..count).map(|i| body(i).surface(Surface::Mesh)).collect())
+        };
+        assert_eq!(stack(10), []);
+        let found = stack(15);
+        let second = found.iter().find(|load| load.body == "body 1").unwrap();
+        assert_eq!(second.effect, SoftSprings::MayLean { bodies: 14 });
+        assert!(second.to_string().contains("a column of 14 would lean"), "{second}");
     }
 }

@@ -24,7 +24,7 @@ pub struct FinishedRun {
     /// Steps taken since the run was last resumed.
     pub steps_here: u64,
     /// Properties of the scene that the user may not expect.
-    pub notes: Vec<&'static str>,
+    pub notes: Vec<String>,
     /// Reasons not to trust the results that were found while it ran.
     pub warnings: Vec<String>,
 }

@@ -144,9 +144,20 @@ impl<'a> RunLoop<'a> {
 }
 
 /// Notes on properties of the scene that the user may not expect.
-fn notes(scene: &Scene) -> Vec<&'static str> {
-    let no_surfaces = "the bodies do not touch each other: none has a `surface`";
-    scene.bodies_pass_through().then_some(no_surfaces).into_iter().collect()
+fn notes(scene: &Scene) -> Vec<String> {
+    let without = scene.without_surface();
+    let Some(first) = without.first() else { return Vec::new() };
+    if without.len() == scene.bodies.len() {
+        return vec!["the bodies do not touch each other: none has a `surface`".to_owned()];
+    }
+    let others = match without.len() - 1 {
+        0 => String::new(),
+        count => format!(" and {count} more"),
+    };
+    let name = &first.name;
+    vec![format!(
+        "other bodies pass through body \"{name}\"{others}: without `surface` it touches only walls"
+    )]
 }
 
 /// Copies a state into `copy`, reusing its memory.

@@ -219,11 +219,12 @@ impl Scene {
         self.bodies.iter().any(moves)
     }
 
-    /// Whether there are several bodies, none of which has a contact surface.
-    pub fn bodies_pass_through(&self) -> bool {
+    /// If there are several bodies, those that others pass through: they have no contact surface.
+    pub fn without_surface(&self) -> Vec<&BodyScene> {
         let count: u64 =
             self.bodies.iter().map(|b| b.copies.as_ref().map_or(1, Copies::total)).sum();
-        count > 1 && self.bodies.iter().all(|body| body.surface == Surface::None)
+        let without = self.bodies.iter().filter(|body| body.surface == Surface::None);
+        if count > 1 { without.collect() } else { Vec::new() }
     }
 
     /// Number of steps of the run: the integer nearest to duration/dt.

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::ContactPoints;
 use super::vertex_normals::{VertexNormals, vertex_normals};
-use crate::distance::OrientedSurface;
+use crate::distance::{Face, OrientedSurface};
 use crate::{Particles, Shape};
 
 /// How deep an edge may enter another between two particles before it needs a contact point, in units of the size of the
@@ -43,7 +43,7 @@ pub(crate) fn contact_points(shape: &Shape) -> ContactPoints {
     let at_particles = match_particles(shape, vertices, &around);
     add_vertices(vertices, &around, &at_particles, &mut points);
     add_edges(&surface, vertices, size, &mut points);
-    add_faces(&surface, vertices, size, count as f64, &mut points);
+    add_faces(&surface, vertices, &around, size, count as f64, &mut points);
 
     let mut made = none;
     made.normal_starts.push(0);
@@ -142,16 +142,17 @@ fn add_edges(surface: &OrientedSurface, vertices: &[DVec3], size: f64, points: &
     }
 }
 
-/// Adds points in the large faces: the centroids of equal parts. The points of all faces together would weigh as much as all
-/// particles, in proportion to area.
+/// Adds points in the large faces: the centroids of equal parts. The points of a flat side weigh as much as the vertices of that
+/// side, which carry it on a wall.
 fn add_faces(
     surface: &OrientedSurface,
     vertices: &[DVec3],
+    around: &[VertexNormals],
     size: f64,
     particle_count: f64,
     points: &mut Vec<Point>,
 ) {
-    let area: f64 = surface.faces.iter().map(|face| face.area()).sum();
+    let used = around.iter().filter(|vertex| !vertex.normals.is_empty()).count();
     for face in &surface.faces {
         let [a, b, c] = face.corners.map(|corner| vertices[corner as usize]);
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -159,7 +160,8 @@ fn add_faces(
             continue;
         }
         let parts = (longest / (LONGEST_FACE_EDGE * size)).ceil().min(MOST_PARTS);
-        let weight = particle_count * face.area() / (area * parts * parts);
+        let corners: f64 = (0..3).map(|corner| around_corner(face, corner, vertices, around)).sum();
+        let weight = corners * particle_count / (used as f64 * parts * parts);
         for (u, v) in centroids(parts as usize) {
             points.push(Point {
                 place: a + (b - a) * u + (c - a) * v,
@@ -170,6 +172,13 @@ fn add_faces(
             });
         }
     }
+}
+
+/// The share that a face has of one of its corners, as part of a flat side.
+fn around_corner(face: &Face, corner: usize, vertices: &[DVec3], around: &[VertexNormals]) -> f64 {
+    let [vertex, next, last] = [0, 1, 2].map(|k| face.corners[(corner + k) % 3] as usize);
+    let [to_next, to_last] = [next, last].map(|other| vertices[other] - vertices[vertex]);
+    to_next.angle_between(to_last) / around[vertex].angle_facing(face.normal())
 }
 
 /// Coordinates along two edges of the centroids of the equal triangles into which a triangle with `parts` parts per edge is
@@ -234,10 +243,10 @@ mod tests {
         let segments = points.half_segments.iter().filter(|half| half.length() > 0.0);
         assert_eq!(segments.count(), 12);
         let all = points.points(&shape);
-        // the faces together weigh as much as the eight particles
+        // on each side as much as the four particles there
         let weight = |index: usize| all.weight(index);
         let faces: f64 = (8 + 12..all.len()).map(weight).sum();
-        assert!((faces - 8.0).abs() < 1e-12, "{faces}");
+        assert!((faces - 24.0).abs() < 1e-12, "{faces}");
         assert!((0..20).all(|index| weight(index) == 1.0));
         assert_eq!(points.normals(0).len(), 3);
     }

@@ -17,6 +17,8 @@ pub(super) struct VertexNormals {
     pub normals: Vec<DVec3>,
     /// Mean length of the edges (m).
     pub spacing: f64,
+    /// Normal and angle (rad) of each face.
+    faces: Vec<(DVec3, f64)>,
 }
 
 impl VertexNormals {
@@ -24,23 +26,28 @@ impl VertexNormals {
     pub fn is_flat(&self) -> bool {
         self.normals.len() == 1
     }
+
+    /// The sum of the angles of the faces that face a direction, as parts of one flat side do (rad).
+    pub fn angle_facing(&self, direction: DVec3) -> f64 {
+        let facing = self.faces.iter().filter(|(normal, _)| normal.dot(direction) > FLAT);
+        facing.map(|(_, angle)| angle).sum()
+    }
 }
 
 /// The normals around each welded vertex; empty for vertices of no face.
 pub(super) fn vertex_normals(surface: &OrientedSurface, vertices: &[DVec3]) -> Vec<VertexNormals> {
-    let mut around: Vec<Vec<(DVec3, f64)>> = vec![Vec::new(); vertices.len()];
     let mut found = vec![VertexNormals::default(); vertices.len()];
     for face in &surface.faces {
         for corner in 0..3 {
             let [a, b, c] = [0, 1, 2].map(|k| face.corners[(corner + k) % 3] as usize);
             let (to_b, to_c) = (vertices[b] - vertices[a], vertices[c] - vertices[a]);
-            around[a].push((face.normal(), to_b.angle_between(to_c)));
+            found[a].faces.push((face.normal(), to_b.angle_between(to_c)));
             found[a].spacing += 0.5 * (to_b.length() + to_c.length());
         }
     }
-    for (found, around) in found.iter_mut().zip(&around) {
-        found.spacing /= around.len().max(1) as f64;
-        found.normals = distinct(around);
+    for vertex in &mut found {
+        vertex.spacing /= vertex.faces.len().max(1) as f64;
+        vertex.normals = distinct(&vertex.faces);
     }
     found
 }

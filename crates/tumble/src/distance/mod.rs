@@ -21,7 +21,7 @@ mod triangle;
 pub use error::SurfaceError;
 pub(crate) use facing::{Exit, Share};
 pub(crate) use normal_cones::NormalCone;
-pub(crate) use oriented_surface::OrientedSurface;
+pub(crate) use oriented_surface::{Face, OrientedSurface};
 pub(crate) use patch::Patch;
 pub(crate) use planes::Plane;
 pub use signed_distance::{Nearest, SignedDistance};
