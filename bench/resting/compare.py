@@ -35,7 +35,7 @@ def engine_factories(tumble=None, rapier=None, mujoco=None):
     if mujoco:
         yield "MuJoCo", mujoco_engine
     if rapier:
-        for shape in ("hull", "trimesh"):
+        for shape in ("cuboid", "hull", "trimesh"):
             yield "Rapier", partial(Rapier, rapier, shape)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from scenes import DURATION, FRICTION, GRAVITY, INTERVAL, MASS
 
-NAMES = {"hull": "convex hull", "trimesh": "triangle mesh"}
+NAMES = {"cuboid": "box primitive", "hull": "convex hull", "trimesh": "triangle mesh"}
 
 
 class Rapier:

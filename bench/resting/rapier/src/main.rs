@@ -1,6 +1,6 @@
 //! Simulates boxes at rest on each other and on a plane with Rapier.
 //!
-//! `resting-rapier hull|trimesh MASS FRICTION GRAVITY DT STEPS FRAMES < BODIES`: each line of BODIES is one box: edges, moments
+//! `resting-rapier cuboid|hull|trimesh MASS FRICTION GRAVITY DT STEPS FRAMES < BODIES`: each line of BODIES is one box: edges, moments
 //! of inertia, position, and orientation (w x y z). STEPS is the number of steps between two frames.
 //!
 //! Prints a line for each body and frame, from the initial state on: position, orientation (w x y z), velocity and
@@ -36,8 +36,9 @@ fn main() {
         let (points, triangles) = Cuboid::new(0.5 * vector(0)).to_trimesh();
         let collider = match shape {
             "hull" => ColliderBuilder::convex_hull(&points).expect("a hull"),
+            "cuboid" => ColliderBuilder::new(SharedShape::new(Cuboid::new(0.5 * vector(0)))),
             "trimesh" => ColliderBuilder::trimesh(points, triangles).expect("a mesh"),
-            other => panic!("unknown shape {other}: use hull or trimesh"),
+            other => panic!("unknown shape {other}: use cuboid, hull or trimesh"),
         };
         let rotation = Rotation::from_xyzw(row[10], row[11], row[12], row[9]);
         // the mass properties are given; the shape has no density
