@@ -10,6 +10,7 @@ from functools import partial
 from scipy.spatial import ConvexHull
 
 import motion
+from common import FAILURES, attempt, print_table, three_digits
 from with_rapier import Rapier
 from with_tumble import Tumble
 
@@ -25,8 +26,6 @@ RAPIER = (
     ("f32", "parts", None),
     ("f32", "trimesh", 0.3),
 )
-
-FAILURES = []  # messages, printed after the tables
 
 
 def engine_factories(folder, tumble=None, rapier=None, mujoco=None):
@@ -51,19 +50,6 @@ def mujoco_engine(*arguments, **settings):
     return MuJoCo(*arguments, **settings)
 
 
-def attempt(name, function):
-    """Returns the result of `function`. If it fails, records the message and returns None."""
-    try:
-        return function()
-    except Exception as error:  # any failure of one engine leaves the others in the comparison
-        message = getattr(error, "stderr", None) or str(error)
-        if isinstance(message, bytes):
-            message = message.decode(errors="replace")
-        lines = [line for line in message.splitlines() if line.strip()] or [repr(error)]
-        FAILURES.append(f"{name}: {lines[0]}")
-        return None
-
-
 def median_times(engines, rounds):
     """Times the engines in turns; returns each engine that runs with the median seconds of its phases."""
     all_runs = [[] for _ in engines]
@@ -82,21 +68,9 @@ def median_times(engines, rounds):
     ]
 
 
-def print_table(headings, rows):
-    """Prints a Markdown table."""
-    for cells in (headings, ["---"] * len(headings), *rows):
-        print("|", " | ".join(cells), "|", flush=True)
-    print()
-
-
 def first_cells(engine):
     """The first cells of a row: engine, settings, dt."""
     return [engine.engine, engine.settings, f"{engine.dt:g}"]
-
-
-def three_digits(value):
-    """Formats a number with three significant digits and without an exponent."""
-    return f"{value:.0f}" if value >= 100 else f"{value:.3g}"
 
 
 def time_rows(medians):

@@ -3,6 +3,8 @@ import pathlib
 
 import numpy as np
 
+from common import rotations
+
 DT = 1e-3  # s
 GRAVITY = 9.81  # m/s^2, along -z
 BOX = 0.75  # m, half an edge of the closed box about the origin
@@ -30,17 +32,6 @@ def setup(folder):
     """The values of setup.txt, a list of numbers for each key."""
     text = pathlib.Path(folder, "setup.txt").read_text()
     return {key: [float(v) for v in values] for key, *values in map(str.split, text.splitlines())}
-
-
-def rotations(q):
-    """Rotation matrices of quaternions (w, x, y, z), one per row."""
-    w, x, y, z = (q / np.linalg.norm(q, axis=1)[:, None]).T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
 
 
 def wall_contacts(states, body, hull):

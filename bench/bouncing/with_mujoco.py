@@ -6,7 +6,8 @@ import time
 import mujoco
 import numpy as np
 
-from motion import BOUNCE, BOX, DROP, DROP_TIME, DT, FRICTION, GRAVITY, MASS, PHASES, rotations, setup
+from common import rotations
+from motion import BOUNCE, BOX, DROP, DROP_TIME, DT, FRICTION, GRAVITY, MASS, PHASES, setup
 
 # MuJoCo's default time constant (s), and the damping ratio for which a flat drop rebounds at 0.7 of its speed
 TIME_CONSTANT, DAMPING_RATIO = 0.02, 0.113
