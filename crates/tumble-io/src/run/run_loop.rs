@@ -156,7 +156,8 @@ fn notes(scene: &Scene) -> Vec<String> {
     };
     let name = &first.name;
     vec![format!(
-        "other bodies pass through body \"{name}\"{others}: without `surface` it touches only walls"
+        "body \"{name}\"{others} touches other bodies with its particles alone, which may pass beside them: \
+         give it a `surface`"
     )]
 }
 
