@@ -22,12 +22,12 @@ const GOLDEN: &[(&str, &str)] = &[
     ("bounce", "0e87c3db7f56d54ccf0118070c10cd1f"),
     ("cradle", "35415243dbfb59fa1edf76e207282417"),
     ("dominoes", "54c3c832ca3f2d2d86bb62e60c5d648b"),
-    ("stack", "5c0d90b456d34ed6598cd9346c1b67a8"),
-    ("chain", "80e9077d0aaf350b4816f7fe2e179696"),
+    ("stack", "ae90a3fbfee908cac8eaf3068b70e2ab"),
+    ("chain", "25dc10ecbba2e0a00f0a30bcdcdf7093"),
     ("cats", "47cad05658f056f6204b70e6aff3ba1b"),
     ("hopper", "cb5916e126d967ed4c2548b4a2ab8a54"),
     ("drum", "8cb11037f0b96ae0a57b714d24623953"),
-    ("conveyor", "b7cc87473db6374d3fa5aa858f465f60"),
+    ("conveyor", "2aff2732915d97a6eafe3639a7280c6c"),
 ];
 
 #[test]
