@@ -300,6 +300,7 @@ impl<'a> Scene<'a> {
             triangles,
             face_count,
             object_count: self.object_count,
+            side_files: self.buffers.into_side_names(),
         })
     }
 }

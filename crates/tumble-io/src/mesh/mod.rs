@@ -38,7 +38,7 @@ mod text;
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 use tumble::Mesh;
@@ -62,6 +62,8 @@ pub struct MeshFile {
     pub file_vertex_count: usize,
     /// Number of faces in the file, with any number of corners.
     pub face_count: usize,
+    /// The side files of a glTF, relative to its folder.
+    pub side_files: Vec<PathBuf>,
     /// Whether exact duplicates were welded.
     pub welded: bool,
 }
@@ -119,6 +121,7 @@ pub fn parse_mesh(
         object_count: parsed.object_count,
         file_vertex_count,
         face_count: parsed.face_count,
+        side_files: parsed.side_files,
         welded,
     })
 }

@@ -160,7 +160,8 @@ impl<'a> Reader<'a> {
         let object_count =
             if self.object_count > 0 { self.object_count } else { self.group_count.max(1) };
         let triangles = self.faces.finish(&self.vertices);
-        Ok(Parsed { vertices: self.vertices, triangles, face_count, object_count })
+        let (vertices, side_files) = (self.vertices, Vec::new());
+        Ok(Parsed { vertices, triangles, face_count, object_count, side_files })
     }
 }
 

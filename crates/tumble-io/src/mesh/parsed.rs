@@ -1,5 +1,7 @@
 //! What each mesh reader returns.
 
+use std::path::PathBuf;
+
 use glam::DVec3;
 
 /// The vertices and triangles of a file, and its counts.
@@ -8,4 +10,6 @@ pub(super) struct Parsed {
     pub(super) triangles: Vec<[u32; 3]>,
     pub(super) face_count: usize,
     pub(super) object_count: usize,
+    /// The other files that were read, relative to the folder of the file.
+    pub(super) side_files: Vec<PathBuf>,
 }

@@ -37,7 +37,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
     }
     let face_count = collector.faces.count;
     let triangles = collector.faces.finish(&collector.vertices);
-    Ok(Parsed { vertices: collector.vertices, triangles, face_count, object_count: 1 })
+    let (vertices, side_files) = (collector.vertices, Vec::new());
+    Ok(Parsed { vertices, triangles, face_count, object_count: 1, side_files })
 }
 
 /// A source of element values, text or binary.

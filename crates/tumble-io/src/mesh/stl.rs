@@ -142,6 +142,7 @@ impl Soup {
         }
         let face_count = self.vertices.len() / 3;
         let triangles = (0..face_count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        Ok(Parsed { vertices: self.vertices, triangles, face_count, object_count })
+        let (vertices, side_files) = (self.vertices, Vec::new());
+        Ok(Parsed { vertices, triangles, face_count, object_count, side_files })
     }
 }

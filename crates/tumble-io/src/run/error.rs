@@ -14,6 +14,8 @@ pub enum RunError {
     CreateFolder(PathBuf, io::Error),
     /// A file cannot be written.
     Write(PathBuf, io::Error),
+    /// A mesh cannot be copied into the folder.
+    KeepMesh(PathBuf, io::Error),
     /// The `scene.toml` in the folder was not written by a run, so it is not overwritten.
     NotARun(PathBuf),
     /// The energy is not finite at this time (s).
@@ -47,6 +49,11 @@ impl std::fmt::Display for RunError {
                 };
                 write!(f, "cannot write {}: {error}; {advice}", path.display())
             }
+            Self::KeepMesh(path, error) => write!(
+                f,
+                "cannot copy the mesh {} into the folder of the run: {error}",
+                path.display()
+            ),
             Self::Draw(path, error) => write!(f, "cannot draw {}: {error}", path.display()),
             Self::NotARun(path) => write!(
                 f,

@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
-use crate::scene::{HEADER, Scene};
+use crate::scene::HEADER;
 
 /// The scene as run. A folder with this file is in use.
 pub(crate) const SCENE_FILE: &str = "scene.toml";
@@ -104,9 +104,12 @@ impl RunFolder {
         fs::remove_file(&path).map_err(|error| RunError::Write(path, error))
     }
 
-    /// Writes `scene.toml`. On failure the file is removed, which releases the folder.
-    pub(super) fn write_scene(&self, scene: &Scene) -> Result<(), RunError> {
-        self.write_file(SCENE_FILE, scene.to_toml().as_bytes()).inspect_err(|_| {
+    /// Writes `scene.toml`, or returns the error that prevents that. The file is removed after an error, which
+    /// releases the folder.
+    pub(super) fn write_scene(&self, toml: Result<String, RunError>) -> Result<String, RunError> {
+        let written =
+            toml.and_then(|toml| self.write_file(SCENE_FILE, toml.as_bytes()).map(|()| toml));
+        written.inspect_err(|_| {
             // best effort: the first error is the one to report
             let _ = fs::remove_file(self.file_path(SCENE_FILE));
         })
@@ -180,10 +183,26 @@ impl RunFolder {
 
     /// Replaces a file atomically: writes a temporary file, then renames it.
     pub(super) fn write_file(&self, name: &str, bytes: &[u8]) -> Result<(), RunError> {
-        let path = self.file_path(name);
-        let temporary = self.file_path(&format!(".{name}.partial"));
+        self.replace(Path::new(name), |file| file.write_all(bytes))
+    }
+
+    /// Copies a file to the path `name` in the folder, whose parents are created.
+    pub(super) fn copy_file(&self, mut from: File, name: &Path) -> Result<(), RunError> {
+        let parent = self.path.join(name.parent().unwrap_or(Path::new("")));
+        fs::create_dir_all(&parent).map_err(|error| RunError::CreateFolder(parent, error))?;
+        self.replace(name, |file| io::copy(&mut from, file).map(drop))
+    }
+
+    fn replace(
+        &self,
+        name: &Path,
+        write: impl FnOnce(&mut File) -> io::Result<()>,
+    ) -> Result<(), RunError> {
+        let path = self.path.join(name);
+        let last = name.file_name().unwrap_or_default().display();
+        let temporary = path.with_file_name(format!(".{last}.partial"));
         let written = File::create(&temporary)
-            .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+            .and_then(|mut file| write(&mut file).and_then(|()| file.sync_all()))
             .and_then(|()| fs::rename(&temporary, &path));
         written.map_err(|error| {
             // best effort: the first error is the one to report

@@ -11,6 +11,7 @@
 //! |---|---|
 //! | `error` | [`RunError`] |
 //! | `folder` | [`RunFolder`]: names of all files, creation of the folder, writing of files |
+//! | `kept_meshes` | the meshes of a run, kept with its folder |
 //! | `trajectory` | rows of `trajectory.csv` and `contacts.csv` |
 //! | `energy_ledger` | rows of `energy.csv` |
 //! | `csv_reader` | reads and parses those rows |
@@ -33,6 +34,7 @@ mod energy_ledger;
 mod error;
 mod folder;
 mod frame_buffers;
+mod kept_meshes;
 mod picture_input;
 mod progress;
 mod recorded_rows;

@@ -35,11 +35,12 @@ pub(super) struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    /// Starts new files that hold only their headers. `energy_start` is the energy at t = 0 (J).
+    /// Starts new files that hold only their headers. `scene_toml` is the scene as in the folder, `energy_start` the energy at
+    /// t = 0 (J).
     pub fn start(
         folder: &'a RunFolder,
-        scene: &Scene,
-        world: &World,
+        (scene, world): (&Scene, &World),
+        scene_toml: String,
         energy_start: f64,
     ) -> Result<Self, RunError> {
         let create = |name, header| {
@@ -55,7 +56,7 @@ impl<'a> Recorder<'a> {
         };
         let frames = FrameBuffers::new(world.body_count());
         let writer = RunWriter::start(folder, files, frames, body_names(world));
-        Ok(Self::new(folder, writer, scene, energy_start))
+        Ok(Self::new(folder, writer, scene_toml, energy_start))
     }
 
     /// Continues after the rows already recorded in `source`, in that folder or in another one.
@@ -64,7 +65,7 @@ impl<'a> Recorder<'a> {
         folder: &'a RunFolder,
         recorded: RecordedRows,
         (scene, world): (&Scene, &World),
-        energy_start: f64,
+        (scene_toml, energy_start): (String, f64),
     ) -> Result<Self, RunError> {
         let RecordedRows { trajectory_bytes, energy_bytes, contacts_bytes, frames } = recorded;
         let open = |name, length| {
@@ -84,11 +85,16 @@ impl<'a> Recorder<'a> {
             has_work: scene.does_work(),
         };
         let writer = RunWriter::start(folder, files, frames, body_names(world));
-        Ok(Self::new(folder, writer, scene, energy_start))
+        Ok(Self::new(folder, writer, scene_toml, energy_start))
     }
 
-    fn new(folder: &'a RunFolder, writer: RunWriter, scene: &Scene, energy_start: f64) -> Self {
-        let (scene_toml, next_checkpoint) = (scene.to_toml(), Instant::now() + CHECKPOINT_INTERVAL);
+    fn new(
+        folder: &'a RunFolder,
+        writer: RunWriter,
+        scene_toml: String,
+        energy_start: f64,
+    ) -> Self {
+        let next_checkpoint = Instant::now() + CHECKPOINT_INTERVAL;
         Self { folder, writer, energy_start, scene_toml, next_checkpoint }
     }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::error::RunError;
 use super::folder::{CHECKPOINT_FILE, FILES, RunFolder, SCENE_FILE, SUMMARY_FILE};
+use super::kept_meshes::kept_toml;
 use super::progress::{FinishedRun, Progress};
 use super::recorded_rows::RecordedRows;
 use super::recorder::Recorder;
@@ -41,7 +42,7 @@ impl Resumption {
         let folder = RunFolder::from_path(path.parent().unwrap_or(Path::new(".")));
         let scene_beside =
             std::fs::read_to_string(folder.file_path(SCENE_FILE)).unwrap_or_default();
-        let is_same_run = are_equal_but_duration(&scene_beside, &checkpoint.scene);
+        let is_same_run = are_same_run(&scene_beside, &checkpoint.scene);
         let exists = |name: &str| folder.file_path(name).symlink_metadata().is_ok();
         let has_run_files = FILES.iter().any(|&name| name != CHECKPOINT_FILE && exists(name));
         if in_place && has_run_files && !is_same_run {
@@ -85,17 +86,23 @@ impl Resumption {
         let Self { loaded: Loaded { scene, world }, energy_start, checkpoint_folder, recorded } =
             self;
         let folder = out.unwrap_or(&checkpoint_folder);
-        match out {
-            Some(out) => out.write_scene(&scene)?,
-            None => checkpoint_folder.remove_summary()?,
-        }
+        let scene_toml = match out {
+            Some(out) => out.write_scene(kept_toml(&scene, out))?,
+            None => {
+                let scene_toml = kept_toml(&scene, folder)?;
+                folder.remove_summary()?;
+                scene_toml
+            }
+        };
+        let model = (&scene, &world);
         let mut recorder = match recorded {
             Some(recorded) => {
-                let model = (&scene, &world);
-                Recorder::resume(&checkpoint_folder, folder, recorded, model, energy_start)?
+                let start = (scene_toml.clone(), energy_start);
+                Recorder::resume(&checkpoint_folder, folder, recorded, model, start)?
             }
             None => {
-                let mut recorder = Recorder::start(folder, &scene, &world, energy_start)?;
+                let mut recorder =
+                    Recorder::start(folder, model, scene_toml.clone(), energy_start)?;
                 if scene.is_frame(world.state().step) {
                     recorder.record_frame(&world)?;
                 }
@@ -105,7 +112,7 @@ impl Resumption {
         // from here on the run can be resumed with the new duration
         recorder.write_checkpoint(&scene, world.state())?;
         if out.is_none() {
-            folder.write_file(SCENE_FILE, scene.to_toml().as_bytes())?;
+            folder.write_file(SCENE_FILE, scene_toml.as_bytes())?;
         }
         RunLoop::new(scene, world, recorder).finish(folder, watch)
     }
@@ -121,8 +128,9 @@ fn load(
         Source { name: format!("the scene in {}", path.display()), text: checkpoint.scene };
     let sets = duration.iter().map(|seconds| format!("duration={seconds}")).collect();
     let options = LoadOptions { sets, force: checkpoint.force };
-    let mut loaded = load_recorded(&checkpoint.name, source, Path::new("."), &options)
-        .map_err(ResumeError::Scene)?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let mut loaded =
+        load_recorded(&checkpoint.name, source, folder, &options).map_err(ResumeError::Scene)?;
     loaded
         .world
         .restore(checkpoint.state)
@@ -130,8 +138,10 @@ fn load(
     Ok(loaded)
 }
 
-/// Whether both texts are the same scene, apart from its duration.
-fn are_equal_but_duration(a: &str, b: &str) -> bool {
-    let rest = |line: &&str| !line.starts_with("duration = ");
+/// Whether both texts are the same scene, apart from its duration and from the paths of its meshes, which change when a
+/// run is moved. Their hashes do not.
+fn are_same_run(a: &str, b: &str) -> bool {
+    let changing = ["duration = ", "mesh = ", "mesh_origin = "];
+    let rest = |line: &&str| !changing.iter().any(|key| line.starts_with(key));
     !a.is_empty() && a.lines().filter(rest).eq(b.lines().filter(rest))
 }

@@ -6,6 +6,7 @@ use tumble::{State, World};
 
 use super::error::RunError;
 use super::folder::{RunFolder, SUMMARY_FILE};
+use super::kept_meshes::kept_toml;
 use super::progress::{FinishedRun, Progress};
 use super::recorder::Recorder;
 use super::summary::Summary;
@@ -28,8 +29,9 @@ pub fn run(
     watch: &mut dyn FnMut(Progress) -> bool,
 ) -> Result<FinishedRun, RunError> {
     let Loaded { scene, world } = loaded;
-    folder.write_scene(&scene)?;
-    let mut recorder = Recorder::start(folder, &scene, &world, world.energy().total())?;
+    let scene_toml = folder.write_scene(kept_toml(&scene, folder))?;
+    let energy_start = world.energy().total();
+    let mut recorder = Recorder::start(folder, (&scene, &world), scene_toml, energy_start)?;
     recorder.record_frame(&world)?;
     // from here on the run can always be resumed
     recorder.write_checkpoint(&scene, world.state())?;

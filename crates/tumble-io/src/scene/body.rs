@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use tumble::{DVec3, MassModel, Sampling};
 
 use super::common::{material, orientation};
-use super::description::{BodyScene, Copies, Geometry, MASS_MODELS, MassScene};
+use super::description::{BodyScene, Copies, Geometry, MASS_MODELS, MassScene, MeshScene};
 use super::motion::motion;
 use super::reader::{Range, Reader};
 use super::shape::{SHAPE_KEYS, shape_scene};
@@ -68,8 +68,9 @@ fn geometry(reader: &Reader) -> Option<Geometry> {
         Some("mesh") => {
             let weld = reader.boolean("weld");
             let sha256 = reader.string("mesh_sha256").unwrap_or_default().to_lowercase();
+            let origin = reader.string("mesh_origin").map(PathBuf::from);
             let path = PathBuf::from(reader.string("mesh")?);
-            Some(Geometry::Mesh { path, sha256, weld })
+            Some(Geometry::Mesh(MeshScene { path, origin, sha256, weld, ..MeshScene::default() }))
         }
         Some("shape") => {
             let shape = shape_scene(reader).map(Geometry::Shape);
@@ -82,7 +83,7 @@ fn geometry(reader: &Reader) -> Option<Geometry> {
         Some(_) => reader.points("particles").map(Geometry::Particles),
         None => {
             reader.mark_known(&SHAPE_KEYS);
-            reader.mark_known(&["weld", "mesh_sha256"]);
+            reader.mark_known(&["weld", "mesh_sha256", "mesh_origin"]);
             reader.problem("", "needs one of `mesh = \"FILE\"`, `shape = \"NAME\"` or `particles = [[x, y, z], …]`");
             None
         }

@@ -101,18 +101,28 @@ pub struct BodyScene {
 #[derive(Clone, Debug)]
 pub enum Geometry {
     /// A mesh file.
-    Mesh {
-        /// Its path; relative to the scene's folder when read.
-        path: PathBuf,
-        /// SHA-256 of the file, lower-case hexadecimal, known once it is read.
-        sha256: String,
-        /// Whether exact duplicates among its vertices are merged; `None`: the default of the format.
-        weld: Option<bool>,
-    },
+    Mesh(MeshScene),
     /// A built-in shape.
     Shape(ShapeScene),
     /// Points, written in the scene.
     Particles(Vec<DVec3>),
+}
+
+/// A mesh file and how it is read.
+#[derive(Clone, Debug, Default)]
+pub struct MeshScene {
+    /// Its path: as in the scene when read, relative to the scene's folder, and absolute once the mesh is loaded.
+    pub path: PathBuf,
+    /// Where the file was when a run began; only the scene of a run has this.
+    pub origin: Option<PathBuf>,
+    /// The folder that is moved or copied as a whole, scene and mesh included; known once the mesh is loaded.
+    pub tree: PathBuf,
+    /// The side files of a glTF, relative to its folder; known once the mesh is loaded.
+    pub side_files: Vec<PathBuf>,
+    /// SHA-256 of the file, lower-case hexadecimal, known once it is read.
+    pub sha256: String,
+    /// Whether exact duplicates among its vertices are merged; `None`: the default of the format.
+    pub weld: Option<bool>,
 }
 
 /// A built-in shape with its keys.

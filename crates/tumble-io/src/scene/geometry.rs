@@ -6,22 +6,11 @@ use std::sync::Arc;
 use tumble::{MassModel, Mesh, Sampling, Shape, ShapeError, Surface, sphere_union_integrals};
 
 use super::description::{BodyScene, Geometry, MassScene, ShapeScene};
-use crate::mesh::{Format, parse_mesh, read_mesh};
+use super::geometry_error::{GeometryError, error};
+use super::mesh_file;
+use crate::mesh::{Format, parse_mesh};
 
 const CAT: &[u8] = include_bytes!("../../embedded/cat.obj");
-
-/// A shape that cannot be built: the key in the scene, and what is wrong.
-#[derive(Debug)]
-pub struct GeometryError {
-    /// Key of the body that causes the error.
-    pub key: &'static str,
-    /// What is wrong and what to do.
-    pub message: String,
-}
-
-fn error(key: &'static str, message: impl std::fmt::Display) -> GeometryError {
-    GeometryError { key, message: message.to_string() }
-}
 
 /// A shape and its mass.
 #[derive(Clone, Debug)]
@@ -81,7 +70,7 @@ fn clump(body: &BodyScene, points: Mesh, radius: f64) -> Result<ShapeAndMass, Ge
     Ok(ShapeAndMass { shape: Arc::new(shape), mass })
 }
 
-/// The points of a body, before `scale`. Fills in the path and hash of a mesh.
+/// The points of a body, before `scale`. Fills in what is known of a mesh file once it is read.
 pub fn load_points(geometry: &mut Geometry, folder: &Path) -> Result<Mesh, GeometryError> {
     match geometry {
         Geometry::Particles(points) => Ok(Mesh { vertices: points.clone(), triangles: Vec::new() }),
@@ -91,21 +80,7 @@ pub fn load_points(geometry: &mut Geometry, folder: &Path) -> Result<Mesh, Geome
         Geometry::Shape(ShapeScene::Cat) => parse_mesh(Format::Obj, CAT, None, None)
             .map(|file| file.mesh)
             .map_err(|cause| error("shape", cause)),
-        Geometry::Mesh { path, sha256, weld } => {
-            let full = folder.join(&*path);
-            let file = read_mesh(&full, *weld).map_err(|cause| error("mesh", cause))?;
-            if !sha256.is_empty() && *sha256 != file.sha256 {
-                let message = format!(
-                    "does not match: {} has {}; the mesh is not the one that this scene was made with",
-                    full.display(),
-                    file.sha256
-                );
-                return Err(error("mesh_sha256", message));
-            }
-            *sha256 = file.sha256;
-            *path = std::path::absolute(&full).unwrap_or(full);
-            Ok(file.mesh)
-        }
+        Geometry::Mesh(mesh) => mesh_file::load(mesh, folder),
     }
 }
 
@@ -116,7 +91,7 @@ fn key_of_error(body: &BodyScene, error: &ShapeError) -> &'static str {
         ShapeError::Open(_) | ShapeError::Shell(_) => "mass_model",
         ShapeError::TooLarge => "scale",
         _ => match body.geometry {
-            Geometry::Mesh { .. } => "mesh",
+            Geometry::Mesh(_) => "mesh",
             Geometry::Shape(_) => "shape",
             Geometry::Particles(_) => "particles",
         },

@@ -199,7 +199,7 @@ fn world(
     for (index, body) in scene.bodies.iter_mut().enumerate() {
         // an invalid body is not built, but its mesh file is checked
         if !is_valid[index] {
-            if matches!(body.geometry, Geometry::Mesh { .. })
+            if matches!(body.geometry, Geometry::Mesh(_))
                 && let Err(error) = geometry::load_points(&mut body.geometry, folder)
             {
                 report(Some(index), error.key, error.message);

@@ -9,7 +9,7 @@
 //! 2. `tree`: parses the text into a tree whose nodes know their `place`, and applies `--set`.
 //! 3. `reader`: reads keys of a table by name, type and range, and collects each `problem`.
 //! 4. `read`, `body`, `shape`, `surface`, `motion`, `common`: read each table into the `description`.
-//! 5. `geometry`, `copies`: build shapes, masses and poses; `load` builds the world from them.
+//! 5. `geometry` (with `mesh_file`, which finds meshes), `copies`: build shapes, masses and poses; `load` builds the world from them.
 //! 6. `write`: turns the description back into TOML.
 //!
 //! To add a key: add a field to its struct in `description`, read it in the file of its table (step 4),
@@ -22,7 +22,9 @@ mod common;
 mod copies;
 mod description;
 mod geometry;
+mod geometry_error;
 mod load;
+mod mesh_file;
 mod motion;
 mod place;
 mod problem;
@@ -35,10 +37,12 @@ mod write;
 
 pub use builtin::{BUILTIN, Builtin, builtin};
 pub use description::{
-    BodyScene, BoxScene, Copies, Geometry, MassScene, MotionScene, OutputScene, Scene, WallScene,
+    BodyScene, BoxScene, Copies, Geometry, MassScene, MeshScene, MotionScene, OutputScene, Scene,
+    WallScene,
 };
 pub use load::{LoadOptions, Loaded, load_builtin, load_file, load_text};
 pub(crate) use load::{load_recorded, load_recorded_file};
+pub(crate) use mesh_file::{copy_name, is_copy};
 pub use place::Source;
 pub use problem::SceneError;
 pub use reader::nearest;

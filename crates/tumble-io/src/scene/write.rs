@@ -94,11 +94,14 @@ fn body(body: &BodyScene) -> Table {
     let mut table = Table::new();
     put(&mut table, "name", body.name.clone());
     match &body.geometry {
-        Geometry::Mesh { path, sha256, weld } => {
-            put(&mut table, "mesh", path.display().to_string());
-            put(&mut table, "mesh_sha256", sha256.clone());
-            if let Some(weld) = weld {
-                put(&mut table, "weld", *weld);
+        Geometry::Mesh(mesh) => {
+            put(&mut table, "mesh", mesh.path.display().to_string());
+            put(&mut table, "mesh_sha256", mesh.sha256.clone());
+            if let Some(origin) = &mesh.origin {
+                put(&mut table, "mesh_origin", origin.display().to_string());
+            }
+            if let Some(weld) = mesh.weld {
+                put(&mut table, "weld", weld);
             }
         }
         Geometry::Shape(shape) => put_shape(&mut table, shape),

@@ -1,6 +1,6 @@
 //! Buffers and accessors: checked slices of bytes, and their values.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -19,6 +19,8 @@ pub(super) struct Buffers<'a> {
     folder: Option<&'a Path>,
     loaded: BTreeMap<usize, Bytes<'a>>,
     side_files: BTreeMap<PathBuf, Rc<Vec<u8>>>,
+    /// Their names in the document.
+    side_names: BTreeSet<PathBuf>,
 }
 
 #[derive(Clone)]
@@ -75,8 +77,8 @@ impl<'a> Buffers<'a> {
         binary_chunk: Option<&'a [u8]>,
         folder: Option<&'a Path>,
     ) -> Self {
-        let (loaded, side_files) = (BTreeMap::new(), BTreeMap::new());
-        Self { document, binary_chunk, folder, loaded, side_files }
+        let (loaded, side_files, side_names) = (BTreeMap::new(), BTreeMap::new(), BTreeSet::new());
+        Self { document, binary_chunk, folder, loaded, side_files, side_names }
     }
 
     /// The number of elements of an accessor, as the document declares it.
@@ -87,6 +89,11 @@ impl<'a> Buffers<'a> {
     /// Total size of the side files that have been loaded (bytes).
     pub(super) fn side_bytes(&self) -> usize {
         self.side_files.values().map(|bytes| bytes.len()).sum()
+    }
+
+    /// The side files that have been loaded, relative to the folder of the document.
+    pub(super) fn into_side_names(self) -> Vec<PathBuf> {
+        self.side_names.into_iter().collect()
     }
 
     /// Loads the buffers of an accessor.
@@ -291,6 +298,7 @@ impl<'a> Buffers<'a> {
             error(format!("the side file {name:.80?} is needed, but there is no folder to look in"))
         })?;
         let path = file::side_file(folder, &name)?;
+        self.side_names.insert(PathBuf::from(name));
         if let Some(known) = self.side_files.get(&path) {
             return Ok(known.clone());
         }
