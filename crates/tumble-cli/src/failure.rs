@@ -39,7 +39,9 @@ impl From<&SceneError> for Failure {
 impl From<&RunError> for Failure {
     fn from(error: &RunError) -> Self {
         match error {
-            RunError::FolderInUse(_) | RunError::NotARun(_) => Self::call(error),
+            RunError::FolderInUse(_) | RunError::Running(_) | RunError::NotARun(_) => {
+                Self::call(error)
+            }
             _ => Self::Run(format!("error: {error}")),
         }
     }

@@ -36,6 +36,7 @@ pub fn resume(args: &ResumeArgs) -> Result<(), Failure> {
     let resumption = Resumption::prepare(&args.checkpoint, args.duration.as_deref(), out.is_none());
     let resumption = resumption.map_err(|error| match &error {
         ResumeError::Scene(error) => Failure::from(error),
+        ResumeError::Folder(error) => Failure::from(error),
         _ => Failure::call(&error),
     })?;
     let new_folder = out.map(|path| RunFolder::create(path, args.force)).transpose();

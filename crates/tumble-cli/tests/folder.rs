@@ -97,6 +97,29 @@ fn runs_started_at_once_get_different_folders() {
 }
 
 #[test]
+fn a_folder_in_which_a_run_is_going_is_not_written_to() {
+    let dir = TestDir::new();
+    let mut child = start(&dir, &["run", "task2", "--duration", "1e6", "--out", "o"]);
+    wait_for(&dir.path("o/checkpoint.tumble"));
+    let calls: [&[&str]; 4] = [
+        &["run", "task1", "--duration", "0.02", "--out", "o"],
+        &["run", "task1", "--duration", "0.02", "--out", "o", "--force"],
+        &["resume", "o", "--duration", "0.02"],
+        &["resume", "o", "--duration", "1e7", "--out", "o/../o", "--force"],
+    ];
+    for call in calls {
+        let outcome = dir.tumble(call).expect_status(2);
+        assert_contains(&outcome.stderr, &["error: a run is still going in o", "--out"]);
+    }
+    assert!(child.try_wait().unwrap().is_none(), "the run was disturbed");
+    // a killed run locks nothing
+    child.kill().unwrap();
+    child.wait().unwrap();
+    dir.tumble(&["run", "task1", "--duration", "0.02", "--out", "o", "--force"]).expect_status(0);
+    assert!(!dir.files("o").iter().any(|name| name.contains("lock")), "{:?}", dir.files("o"));
+}
+
+#[test]
 fn ctrl_c_leaves_a_complete_folder() {
     for name in ["-INT", "-TERM"] {
         let dir = TestDir::new();

@@ -10,6 +10,8 @@ use tumble::StepError;
 pub enum RunError {
     /// The folder already holds a run.
     FolderInUse(PathBuf),
+    /// A run is going on in the folder.
+    Running(PathBuf),
     /// The folder cannot be created.
     CreateFolder(PathBuf, io::Error),
     /// A file cannot be written.
@@ -32,6 +34,11 @@ impl std::fmt::Display for RunError {
             Self::FolderInUse(path) => write!(
                 f,
                 "{} already holds a run; choose another folder with --out, or overwrite the run with --force",
+                path.display()
+            ),
+            Self::Running(path) => write!(
+                f,
+                "a run is still going in {}; wait for its end, stop it with Ctrl-C, or choose another folder with --out",
                 path.display()
             ),
             Self::CreateFolder(path, error) => write!(

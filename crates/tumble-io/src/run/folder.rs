@@ -3,8 +3,10 @@
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::error::RunError;
+use super::lock::RunLock;
 use crate::scene::HEADER;
 
 /// The scene as run. A folder with this file is in use.
@@ -43,22 +45,33 @@ pub(super) const FILES: [&str; 9] = [
 #[derive(Clone, Debug)]
 pub struct RunFolder {
     path: PathBuf,
+    /// Held by all copies together, if the folder is to be written to.
+    lock: Option<Arc<RunLock>>,
 }
 
 impl RunFolder {
     /// Creates the folder at `path`, or reserves an existing folder that holds no run.
     ///
     /// With `force`, the files of an old run are removed first. An empty `scene.toml` reserves the
-    /// folder until the run writes its scene, so that two processes never share a folder.
+    /// folder until the run writes its scene, so that two processes never share a folder. The folder is locked until the
+    /// returned value and its copies are dropped.
     ///
     /// # Errors
-    /// [`RunError::FolderInUse`], [`RunError::NotARun`], [`RunError::CreateFolder`] or
+    /// [`RunError::FolderInUse`], [`RunError::Running`], [`RunError::NotARun`], [`RunError::CreateFolder`] or
     /// [`RunError::Write`].
     pub fn create(path: &Path, force: bool) -> Result<Self, RunError> {
-        let folder = Self { path: path.to_owned() };
+        let folder = Self::from_path(path);
         fs::create_dir_all(path).map_err(|error| RunError::CreateFolder(path.to_owned(), error))?;
+        // `symlink_metadata` also detects a dangling link
+        let exists = |name: &str| folder.file_path(name).symlink_metadata().is_ok();
+        if !force && FILES.into_iter().any(exists) {
+            // --force would not help against a run that is still going
+            let is_running = RunLock::is_taken(path);
+            let error = if is_running { RunError::Running } else { RunError::FolderInUse };
+            return Err(error(path.to_owned()));
+        }
+        let folder = folder.locked()?;
         for name in FILES {
-            // `symlink_metadata` also detects a dangling link
             if folder.file_path(name).symlink_metadata().is_ok() {
                 if !force {
                     return Err(RunError::FolderInUse(path.to_owned()));
@@ -81,7 +94,19 @@ impl RunFolder {
     /// An empty path is the current folder. Nothing is created or checked.
     pub fn from_path(path: &Path) -> Self {
         let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-        Self { path: path.to_owned() }
+        Self { path: path.to_owned(), lock: None }
+    }
+
+    /// Locks the folder, which exists, until the returned value and its copies are dropped.
+    ///
+    /// # Errors
+    /// [`RunError::Running`] if another run has locked it, or [`RunError::Write`].
+    pub(super) fn locked(mut self) -> Result<Self, RunError> {
+        let lock = RunLock::take(&self.path)
+            .map_err(|error| RunError::Write(RunLock::path(&self.path), error))?;
+        let lock = lock.ok_or_else(|| RunError::Running(self.path.clone()))?;
+        self.lock = Some(Arc::new(lock));
+        Ok(self)
     }
 
     /// Whether `path` is this folder, also by another path to it.
@@ -141,7 +166,7 @@ impl RunFolder {
                 continue;
             }
             match Self::create(&path, false) {
-                Err(RunError::FolderInUse(_)) => number += 1,
+                Err(RunError::FolderInUse(_) | RunError::Running(_)) => number += 1,
                 result => return result,
             }
         }

@@ -10,6 +10,7 @@
 //! | file | contents |
 //! |---|---|
 //! | `error` | [`RunError`] |
+//! | `lock` | the lock of a folder |
 //! | `folder` | [`RunFolder`]: names of all files, creation of the folder, writing of files |
 //! | `kept_meshes` | the meshes of a run, kept with its folder |
 //! | `trajectory` | rows of `trajectory.csv` and `contacts.csv` |
@@ -35,6 +36,7 @@ mod error;
 mod folder;
 mod frame_buffers;
 mod kept_meshes;
+mod lock;
 mod picture_input;
 mod progress;
 mod recorded_rows;

@@ -37,9 +37,13 @@ impl Resumption {
         in_place: bool,
     ) -> Result<Self, ResumeError> {
         let path = if path.is_dir() { path.join(CHECKPOINT_FILE) } else { path.to_owned() };
+        let mut folder = RunFolder::from_path(path.parent().unwrap_or(Path::new(".")));
+        // before the checkpoint is read: a run that is still going would replace it
+        if in_place && path.is_file() {
+            folder = folder.locked().map_err(ResumeError::Folder)?;
+        }
         let checkpoint =
             read_checkpoint(&path).map_err(|error| ResumeError::Checkpoint(path.clone(), error))?;
-        let folder = RunFolder::from_path(path.parent().unwrap_or(Path::new(".")));
         let scene_beside =
             std::fs::read_to_string(folder.file_path(SCENE_FILE)).unwrap_or_default();
         let is_same_run = are_same_run(&scene_beside, &checkpoint.scene);

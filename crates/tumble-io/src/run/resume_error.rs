@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use tumble::StateError;
 
 use super::csv_reader::RowError;
+use super::error::RunError;
 use crate::checkpoint::CheckpointError;
 use crate::scene::SceneError;
 
@@ -26,6 +27,8 @@ pub enum ResumeError {
     },
     /// The folder holds files of another run.
     OtherRun(PathBuf),
+    /// The folder cannot be written to, perhaps because a run is going on in it.
+    Folder(RunError),
     /// The rows of a file are not those of the checkpoint's run.
     Rows(RowError),
 }
@@ -49,6 +52,7 @@ impl std::fmt::Display for ResumeError {
                  choose another folder with --out",
                 path.display()
             ),
+            Self::Folder(error) => error.fmt(f),
             Self::Rows(error) => write!(
                 f,
                 "{} {}, so the run cannot continue after its rows; to continue without them, move \
