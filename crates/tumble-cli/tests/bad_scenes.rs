@@ -249,6 +249,15 @@ fn huge_files_give_short_messages() {
 }
 
 #[test]
+fn a_file_that_is_too_large_for_a_scene_is_not_read() {
+    let dir = TestDir::new();
+    let file = std::fs::File::create(dir.path("huge.toml")).unwrap();
+    file.set_len(1 << 30).unwrap();
+    let outcome = dir.tumble(&["run", "huge.toml"]).expect_status(2);
+    assert_contains(&outcome.stderr, &["huge.toml is larger than 16 MiB", "mesh file", "copies"]);
+}
+
+#[test]
 fn crlf_and_byte_order_mark_are_accepted() {
     let dir = TestDir::new();
     let scene = format!("\u{feff}duration = 0.01\n{BODY}").replace('\n', "\r\n");

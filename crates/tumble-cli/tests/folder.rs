@@ -193,26 +193,42 @@ fn a_folder_that_cannot_be_created_is_status_1() {
 }
 
 #[test]
-fn a_full_disk_is_status_1_without_a_summary() {
+fn a_file_that_cannot_be_written_is_status_1_without_a_summary() {
     let dir = TestDir::new();
-    // the scene does not fit
-    fs::create_dir(dir.path("o")).unwrap();
-    symlink("/dev/full", dir.path("o/.scene.toml.partial")).unwrap();
-    let outcome =
-        dir.tumble(&["run", "task1", "--duration", "0.02", "--out", "o"]).expect_status(1);
-    assert_contains(
-        &outcome.stderr,
-        &["cannot write o/scene.toml", "No space left", "free some space", "--out"],
-    );
+    // the scene cannot be written: files may have no bytes
+    let script = "trap '' XFSZ; ulimit -f 0; exec \"$0\" run task1 --duration 0.02 --out o";
+    let output = Command::new("bash")
+        .current_dir(dir.0.path())
+        .args(["-c", script, env!("CARGO_BIN_EXE_tumble")])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_contains(&message, &["cannot write o/scene.toml", "--out"]);
     assert!(dir.files("o").is_empty(), "{:?}", dir.files("o"));
 
-    // the summary does not fit: all but the last file is there
-    symlink("/dev/full", dir.path("o/.summary.json.partial")).unwrap();
+    // the summary cannot be written: all but the last file is there
+    fs::create_dir(dir.path("o/.summary.json.partial")).unwrap();
     let outcome =
         dir.tumble(&["run", "task1", "--duration", "0.02", "--out", "o"]).expect_status(1);
     assert_contains(&outcome.stderr, &["cannot write o/summary.json"]);
     assert!(!dir.path("o/summary.json").exists());
     assert!(dir.path("o/motion.png").exists());
+}
+
+#[test]
+fn temporary_files_do_not_follow_links() {
+    let dir = TestDir::new();
+    dir.write("precious", "mine");
+    fs::create_dir(dir.path("o")).unwrap();
+    for name in ["scene.toml", "checkpoint.tumble", "summary.json", "motion.html"] {
+        symlink(dir.path("precious"), dir.path("o").join(format!(".{name}.partial"))).unwrap();
+    }
+    dir.tumble(&["run", "task1", "--duration", "0.02", "--out", "o"]).expect_status(0);
+    assert_eq!(dir.read("precious"), "mine");
+    for name in dir.files("o") {
+        assert!(!dir.path("o").join(&name).is_symlink() && !name.contains("partial"), "{name}");
+    }
 }
 
 #[test]

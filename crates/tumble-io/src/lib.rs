@@ -4,6 +4,7 @@ mod appearance;
 pub mod checkpoint;
 pub mod export;
 pub mod mesh;
+mod new_file;
 pub mod page;
 pub mod picture;
 pub mod plot;

@@ -6,6 +6,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::error::ExportError;
+use crate::new_file::create_anew;
 
 /// A file under a temporary name in the folder of the output file; removed on drop unless finished.
 pub(super) struct PartialFile {
@@ -55,7 +56,7 @@ impl PartialFile {
     pub fn create(path: &Path, force: bool) -> Result<Self, ExportError> {
         let temporary = temporary_path(path);
         let file =
-            File::create(&temporary).map_err(|error| ExportError::Write(path.to_owned(), error))?;
+            create_anew(&temporary).map_err(|error| ExportError::Write(path.to_owned(), error))?;
         let file = Some(BufWriter::with_capacity(1 << 16, file));
         Ok(Self { path: path.to_owned(), temporary, file, force })
     }

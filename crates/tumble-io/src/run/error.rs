@@ -78,3 +78,16 @@ impl std::fmt::Display for RunError {
 }
 
 impl std::error::Error for RunError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_told_with_what_helps() {
+        let error = io::Error::from(io::ErrorKind::StorageFull);
+        let message = RunError::Write(PathBuf::from("o/scene.toml"), error).to_string();
+        assert!(message.starts_with("cannot write o/scene.toml: "), "{message}");
+        assert!(message.contains("free some space") && message.contains("--out"), "{message}");
+    }
+}

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use super::error::RunError;
 use super::lock::RunLock;
+use crate::new_file::create_anew;
 use crate::scene::HEADER;
 
 /// The scene as run. A folder with this file is in use.
@@ -182,10 +183,10 @@ impl RunFolder {
         self.path.join(name)
     }
 
-    /// Creates a file for buffered writing; an existing file is emptied.
+    /// Creates a file for buffered writing; an existing file is replaced.
     pub(super) fn create_file(&self, name: &str) -> Result<BufWriter<File>, RunError> {
         let path = self.file_path(name);
-        let file = File::create(&path).map_err(|error| RunError::Write(path, error))?;
+        let file = create_anew(&path).map_err(|error| RunError::Write(path, error))?;
         Ok(BufWriter::with_capacity(1 << 16, file))
     }
 
@@ -226,7 +227,7 @@ impl RunFolder {
         let path = self.path.join(name);
         let last = name.file_name().unwrap_or_default().display();
         let temporary = path.with_file_name(format!(".{last}.partial"));
-        let written = File::create(&temporary)
+        let written = create_anew(&temporary)
             .and_then(|mut file| write(&mut file).and_then(|()| file.sync_all()))
             .and_then(|()| fs::rename(&temporary, &path));
         written.map_err(|error| {

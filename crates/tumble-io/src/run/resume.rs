@@ -11,7 +11,7 @@ use super::recorder::Recorder;
 use super::resume_error::ResumeError;
 use super::run_loop::RunLoop;
 use crate::checkpoint::{Checkpoint, read_checkpoint};
-use crate::scene::{LoadOptions, Loaded, Source, load_recorded};
+use crate::scene::{LoadOptions, Loaded, Source, load_recorded, read_scene_text};
 
 /// A run that is ready to be resumed.
 #[derive(Debug)]
@@ -44,8 +44,7 @@ impl Resumption {
         }
         let checkpoint =
             read_checkpoint(&path).map_err(|error| ResumeError::Checkpoint(path.clone(), error))?;
-        let scene_beside =
-            std::fs::read_to_string(folder.file_path(SCENE_FILE)).unwrap_or_default();
+        let scene_beside = read_scene_text(&folder.file_path(SCENE_FILE)).unwrap_or_default();
         let is_same_run = are_same_run(&scene_beside, &checkpoint.scene);
         let exists = |name: &str| folder.file_path(name).symlink_metadata().is_ok();
         let has_run_files = FILES.iter().any(|&name| name != CHECKPOINT_FILE && exists(name));

@@ -12,11 +12,9 @@ use super::description::{BodyScene, Geometry, Scene};
 use super::geometry::{self, ShapeAndMass};
 use super::place::{Place, Source};
 use super::problem::{Problem, SceneError};
+use super::scene_text::read_scene_text;
 use super::tree::{self, Node};
 use super::{read, reader::Reader};
-
-/// The largest size of a scene file.
-const MAX_BYTES: u64 = 256 << 20;
 
 /// A scene and the world it describes.
 #[derive(Debug)]
@@ -58,7 +56,7 @@ fn read_and_load(
     is_recorded: bool,
 ) -> Result<Loaded, SceneError> {
     let file = path.display().to_string();
-    let text = read_text(path).map_err(|message| {
+    let text = read_scene_text(path).map_err(|message| {
         let problem = Problem::new(Place { source: usize::MAX, span: 0..0 }, "", message);
         SceneError::new(Vec::new(), vec![problem])
     })?;
@@ -75,35 +73,6 @@ pub fn load_builtin(name: &str, options: &LoadOptions) -> Option<Result<Loaded, 
     let scene = builtin(name)?;
     let source = Source { name: format!("{name} (built in)"), text: scene.text.to_owned() };
     Some(load_text(name, source, Path::new("."), options))
-}
-
-fn read_text(path: &Path) -> Result<String, String> {
-    let shown = path.display();
-    let metadata = std::fs::metadata(path)
-        .map_err(|error| format!("cannot read the scene {shown}: {error}"))?;
-    if metadata.is_dir() {
-        return Err(format!("{shown} is a folder; name the scene file in it"));
-    }
-    if !metadata.is_file() {
-        return Err(format!("{shown} is not a regular file; save the scene to one first"));
-    }
-    if metadata.len() > MAX_BYTES {
-        let most = MAX_BYTES >> 20;
-        return Err(format!(
-            "{shown} is larger than {most} MiB: no scene; put particles into a mesh file"
-        ));
-    }
-    let bytes =
-        std::fs::read(path).map_err(|error| format!("cannot read the scene {shown}: {error}"))?;
-    let mut text = String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        format!("{shown} is no scene: a scene is TOML text in UTF-8, and byte {at} is not")
-    })?;
-    // the byte order mark that some editors write would count as a column
-    if text.starts_with('\u{feff}') {
-        text.remove(0);
-    }
-    Ok(text)
 }
 
 /// Reads a scene from text. Relative mesh paths start at `folder`.

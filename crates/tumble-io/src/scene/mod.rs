@@ -5,7 +5,7 @@
 //!
 //! Data flows one way:
 //!
-//! 1. `load`: reads the text and runs the steps below.
+//! 1. `load`: reads the text (`scene_text`) and runs the steps below.
 //! 2. `tree`: parses the text into a tree whose nodes know their `place`, and applies `--set`.
 //! 3. `reader`: reads keys of a table by name, type and range, and collects each `problem`.
 //! 4. `read`, `body`, `shape`, `surface`, `motion`, `common`: read each table into the `description`.
@@ -30,6 +30,7 @@ mod place;
 mod problem;
 mod read;
 mod reader;
+mod scene_text;
 mod shape;
 mod surface;
 mod tree;
@@ -46,4 +47,5 @@ pub(crate) use mesh_file::{copy_name, is_copy};
 pub use place::Source;
 pub use problem::SceneError;
 pub use reader::nearest;
+pub(crate) use scene_text::read_scene_text;
 pub(crate) use write::HEADER;
