@@ -82,7 +82,14 @@ fn particles(file: &MeshFile) -> String {
     let kept = file.mesh.vertices.len();
     let merged = file.file_vertex_count - kept;
     let all = count(kept as u64);
-    if merged > 0 { format!("{all} ({} duplicates merged)", count(merged as u64)) } else { all }
+    if merged > 0 {
+        {
+            let duplicates = if merged == 1 { "duplicate" } else { "duplicates" };
+            format!("{all} ({} {duplicates} merged)", count(merged as u64))
+        }
+    } else {
+        all
+    }
 }
 
 fn vector(v: DVec3) -> String {

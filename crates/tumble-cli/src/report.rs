@@ -50,7 +50,8 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
 
 fn bodies_of(s: &Summary) -> String {
     let plural = if s.bodies == 1 { "body" } else { "bodies" };
-    format!("{}, {} {plural}, {} particles", s.scene, s.bodies, count(s.particles))
+    let particles = if s.particles == 1 { "particle" } else { "particles" };
+    format!("{}, {} {plural}, {} {particles}", s.scene, s.bodies, count(s.particles))
 }
 
 fn integrator(s: &Summary) -> String {

@@ -72,7 +72,7 @@ fn numbers_out_of_range_are_rejected() {
         ("dt = -1e-300", &["but is -1e-300"]),
         ("dt = 1e-300\nduration = 1e300", &["`dt` leads to inf steps", "s.toml:2:6"]),
         ("duration = 1e18", &["`duration` leads to 1e21 steps", "s.toml:2:12"]),
-        ("duration = 1e-9", &["`duration` leads to no step at all", "0.001 s"]),
+        ("duration = 1e-9", &["`duration` leads to no step at all", "a `dt` of 0.000000001 s"]),
         ("dt = 0xFFFFFFFFFFFFFFFFFFFFFFFF", &["no step at all"]),
         ("dt = 9223372036854775808", &["no step at all"]),
         ("velocity_damping_stiffness = -1", &["must be 0 or more, but is -1", ":2:30"]),
@@ -246,6 +246,39 @@ fn huge_files_give_short_messages() {
         assert!(message.len() < 100_000, "{}", message.len());
     }
     assert!(start.elapsed() < std::time::Duration::from_secs(60));
+}
+
+#[test]
+fn a_default_dt_that_is_too_long_points_at_its_cause() {
+    let dir = TestDir::new();
+    let floor = "duration = 0.001\n[[wall]]\nnormal = [0, 1, 0]\noffset = -3\n";
+    let cases = [
+        (
+            format!("{floor}[collision]\ncollision_stiffness = 1e9\n{BODY}"),
+            "`collision.collision_stiffness`",
+            "6:23",
+        ),
+        (
+            format!("{floor}collision_stiffness = 1e9\n{BODY}"),
+            "`wall.0.collision_stiffness`",
+            "5:23",
+        ),
+        (format!("{floor}{BODY}mass = 1e-4\n"), "`body.0.mass` makes the body light", "8:8"),
+        (
+            format!("{floor}[collision]\ncollision_stiffness = 5e3\n{BODY}particle_mass = 1e-6\n"),
+            "`body.0.particle_mass` makes the body light",
+            "10:17",
+        ),
+    ];
+    for (index, (scene, key, place)) in cases.into_iter().enumerate() {
+        let message = dir.rejected(&scene, &[]);
+        let place = format!("s.toml:{place}");
+        assert_contains(&message, &[key, &place, "the default `dt` of 0.001 s", "--force"]);
+        // the advice helps
+        let line = message.split('`').find(|part| part.starts_with("dt = ")).unwrap();
+        dir.write("good.toml", format!("{line}\n{scene}"));
+        dir.run(&["good.toml"], &format!("o{index}"));
+    }
 }
 
 #[test]

@@ -85,7 +85,8 @@ impl std::fmt::Display for CheckpointError {
             Self::Empty => write!(f, "is empty"),
             Self::NotACheckpoint => write!(f, "is no checkpoint: it begins with other bytes"),
             Self::Truncated { found } => {
-                write!(f, "is cut short: only its first {found} bytes are there")
+                let verb = if *found == 1 { "byte is" } else { "bytes are" };
+                write!(f, "is cut short: only its first {found} {verb} there")
             }
             Self::Damaged => write!(f, "is damaged: its checksum does not match its bytes"),
             Self::Version(version) => write!(

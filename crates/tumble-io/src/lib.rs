@@ -2,6 +2,7 @@
 
 mod appearance;
 pub mod checkpoint;
+mod counted;
 pub mod export;
 pub mod mesh;
 mod new_file;

@@ -2,6 +2,7 @@
 
 use super::error::ExportError;
 use super::options::{ExportOptions, Format};
+use crate::counted::counted;
 use crate::replay::{Replay, ReplayFrame};
 
 /// Default frame rate of videos (1/s).
@@ -86,9 +87,9 @@ fn time_span<'a>(
             let (first, last) =
                 frames.first().zip(frames.last()).map_or((0.0, 0.0), |(a, b)| (a.time, b.time));
             Err(ExportError::NoFrames(format!(
-                "no frame was recorded in the selected time span; the run has {} frames, from {first} s to \
+                "no frame was recorded in the selected time span; the run has {}, from {first} s to \
                  {last} s",
-                frames.len(),
+                counted(frames.len(), "frame", "frames"),
             )))
         }
     }

@@ -21,6 +21,7 @@ use super::error::{Place, ReadError};
 use super::parsed::Parsed;
 use super::polygon::Faces;
 use super::text::check_text;
+use crate::counted::counted;
 use data::{Buffers, error, get};
 use schema::{Document, Node, Primitive};
 
@@ -250,7 +251,8 @@ impl<'a> Scene<'a> {
         for corner in &mut corners {
             if *corner as usize >= vertex_count {
                 return Err(error(format!(
-                    "an index is {corner}, but its primitive has only {vertex_count} vertices"
+                    "an index is {corner}, but its primitive has only {}",
+                    counted(vertex_count, "vertex", "vertices")
                 )));
             }
             *corner += first as u32;

@@ -13,6 +13,7 @@ use super::error::{Place, ReadError};
 use super::parsed::Parsed;
 use super::polygon::Faces;
 use super::text::{Style, Words, check_text, show};
+use crate::counted::counted;
 
 /// Reads the bytes of an OBJ file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
@@ -128,7 +129,8 @@ impl<'a> Reader<'a> {
                 .and_then(|index| u32::try_from(index).ok())
                 .ok_or_else(|| {
                     self.words.error(format!(
-                        "face refers to vertex {back}, but only {count} vertices are given before it"
+                        "face refers to vertex {back}, but there are only {} before it",
+                        counted(count, "vertex", "vertices")
                     ))
                 }),
             Some(number) => u32::try_from(number - 1).map_err(|_| {
@@ -152,8 +154,9 @@ impl<'a> Reader<'a> {
             && index as usize >= count
         {
             let number = u64::from(index) + 1;
+            let vertices = counted(count, "vertex", "vertices");
             let message =
-                format!("face refers to vertex {number}, but the file has only {count} vertices");
+                format!("face refers to vertex {number}, but the file has only {vertices}");
             return Err(ReadError::new(Some(place), message));
         }
         let face_count = self.faces.count;

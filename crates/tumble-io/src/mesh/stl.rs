@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::error::{Place, ReadError};
 use super::parsed::Parsed;
 use super::text::{Style, Words, check_text, show};
+use crate::counted::counted;
 
 /// Bytes before the first triangle of a binary file: 80 of header, 4 of count.
 const HEADER: usize = 84;
@@ -30,7 +31,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
     let length = bytes.len();
     let message = match declared {
         None => format!(
-            "the file has only {length} bytes; an STL begins with `solid` (text) or has at least {HEADER} bytes (binary)"
+            "the file has only {}; an STL begins with `solid` (text) or has at least {HEADER} bytes (binary)",
+            counted(length, "byte", "bytes")
         ),
         Some(count) => format!(
             "the header promises {count} triangles, which take {} bytes, but the file has {length}: it is {}",

@@ -8,6 +8,7 @@ use tumble::{Body, BodyView, BuildError, DQuat, DVec3, World, WorldBuilder};
 
 use super::body::MASS_KEYS;
 use super::builtin::builtin;
+use super::default_dt::{self, Unstable};
 use super::description::{BodyScene, Geometry, Scene};
 use super::geometry::{self, ShapeAndMass};
 use super::place::{Place, Source};
@@ -200,6 +201,14 @@ fn world(
     let world = builder.build().map_err(|errors| {
         let mut reported = BTreeSet::new();
         for error in errors.0 {
+            if let BuildError::Unstable { dt, critical, body } = &error
+                && !top.has("dt")
+            {
+                let reader = owners.get(body).and_then(|&index| readers.get(index));
+                let unstable = Unstable { dt: *dt, critical: *critical, body };
+                problems.borrow_mut().push(default_dt::problem(&top, reader, &unstable));
+                continue;
+            }
             let (index, key) = origin(&error, &owners, &readers);
             // report only one of the copies of a body
             if reported.insert((index, key)) {

@@ -20,6 +20,7 @@ mod body;
 mod builtin;
 mod common;
 mod copies;
+mod default_dt;
 mod description;
 mod geometry;
 mod geometry_error;

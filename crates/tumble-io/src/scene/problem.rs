@@ -6,6 +6,7 @@ use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use super::place::{Place, Source};
+use crate::counted::counted;
 
 /// The largest number of problems shown; others are counted.
 const MAX_SHOWN: usize = 100;
@@ -73,7 +74,7 @@ impl SceneError {
             shown.map(|problem| renderer.render(&[self.group(problem)])).collect();
         let hidden = self.problems.len().saturating_sub(MAX_SHOWN);
         if hidden > 0 {
-            reports.push(format!("and {hidden} more problems"));
+            reports.push(format!("and {}", counted(hidden, "more problem", "more problems")));
         }
         reports.join("\n\n")
     }

@@ -24,9 +24,12 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
         let key = if top.has("dt") { "dt" } else { "duration" };
         top.problem(key, format!("leads to {:e} steps, more than can be counted", duration / dt));
     } else if duration > 0.0 && (duration / dt).round() == 0.0 {
+        let why = format!("a step of `dt` takes {dt} s, the run of `duration` {duration} s");
         let key = if top.has("duration") { "duration" } else { "dt" };
-        let message = format!("leads to no step at all: a step takes {dt} s, the run {duration} s");
-        top.problem(key, message);
+        top.problem(
+            key,
+            format!("leads to no step at all: {why}; a `dt` of {duration} s would do"),
+        );
     }
     let collision = match top.table("collision") {
         None => Material::default(),
