@@ -43,7 +43,7 @@ const MAX_BYTES: u64 = 4 << 30;
 pub struct Checkpoint {
     /// The scene's name.
     pub name: String,
-    /// The scene as run, as TOML, with meshes by full path and hash.
+    /// The scene as run, as TOML, with meshes by path from the folder of the run, and by hash.
     pub scene: String,
     /// Whether a step above the critical one was accepted.
     pub force: bool,

@@ -72,7 +72,8 @@ fn rounded_down(x: f64) -> f64 {
     // formatting has rounded up
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     let digits: f64 = digits.parse().unwrap_or(1.0);
-    format!("{:.1}e{exponent}", digits - 0.1).parse().unwrap_or(x)
+    let less = if digits > 1.0 { digits - 0.1 } else { 0.99 };
+    format!("{less:.2}e{exponent}").parse().unwrap_or(x)
 }
 
 #[cfg(test)]

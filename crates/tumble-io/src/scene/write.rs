@@ -14,7 +14,7 @@ use super::description::{
 pub const HEADER: &str = "# The scene as run, every default written out.";
 
 impl Scene {
-    /// The scene as TOML, every default written out, meshes by full path and hash. Reading it
+    /// The scene as TOML, every default written out, meshes by path and hash. Reading it
     /// again gives the same world.
     pub fn to_toml(&self) -> String {
         let mut top = Table::new();

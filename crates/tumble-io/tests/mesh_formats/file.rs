@@ -61,7 +61,7 @@ fn errors_report_file_line_and_column() {
     assert_eq!(error.place, Some(Place::Line { line: 2, column: Some(7) }));
     assert_contains(
         &error.to_string(),
-        &["bad.obj:2:7: face refers to vertex 7, but the file has only 1 vertices"],
+        &["bad.obj:2:7: face refers to vertex 7, but the file has only 1 vertex"],
     );
 }
 

@@ -156,7 +156,7 @@ fn out_of_range_indices_are_rejected() {
     );
     assert_contains(
         &parse_invalid(&format!("{SQUARE}f 1 2 -5\n")),
-        &["vertex -5, but only 4 vertices are given before it"],
+        &["vertex -5, but there are only 4 vertices before it"],
     );
     assert_contains(
         &parse_invalid(&format!("{SQUARE}f 0 1 2\n")),
