@@ -92,6 +92,18 @@ impl<'a> Words<'a> {
         width > 0
     }
 
+    /// The next word, of this line or of a later one, or `None` at the end of the text.
+    pub(super) fn next_word_of_text(&mut self) -> Option<&'a [u8]> {
+        loop {
+            if let Some(word) = self.next_word() {
+                return Some(word);
+            }
+            if !self.next_line() {
+                return None;
+            }
+        }
+    }
+
     /// The next word as a finite number; `what` names it in messages.
     pub(super) fn next_number(&mut self, what: &str) -> Result<f64, ReadError> {
         match self.next_word() {
