@@ -14,7 +14,7 @@ use glam::DVec3;
 
 use super::error::ReadError;
 use super::parsed::Parsed;
-use super::text::{Style, Words, check_text};
+use super::text::{Style, Words, check_text, is_utf16};
 
 /// Reads the bytes of an STL file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
@@ -24,6 +24,9 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
         return text::parse(bytes);
     }
     binary::parse(bytes).map_err(|mut error| {
+        if is_utf16(bytes) {
+            return check_text(bytes, "STL").err().unwrap_or(error);
+        }
         if begins_with_solid {
             error.message += " (it begins with `solid`, but is not text: it has zero bytes)";
         }

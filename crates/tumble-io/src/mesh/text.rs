@@ -166,9 +166,14 @@ pub(super) fn show(word: &[u8]) -> String {
     format!("`{shown}`")
 }
 
+/// Whether bytes begin with the byte order mark of UTF-16, as PowerShell writes it.
+pub(super) fn is_utf16(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")
+}
+
 /// Rejects bytes that cannot be text, to give a clearer error than the parser would.
 pub(super) fn check_text(bytes: &[u8], format: &str) -> Result<(), ReadError> {
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+    if is_utf16(bytes) {
         return Err(ReadError::new(
             Some(Place::Byte(0)),
             format!(

@@ -212,7 +212,10 @@ fn a_wrong_count_is_corrected_or_rejected() {
         &["5 triangles and 0 bytes", "wrong"],
     );
     assert_contains(&parse_invalid(&[&binary[..], &binary].concat()), &["another STL follows"]);
-    // text with a zero byte
+    // text in UTF-16, and text with a zero byte
+    let text = format!("\u{feff}solid a\n{FACET}\n{FACET}\nendsolid");
+    let utf16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert_contains(&parse_invalid(&utf16), &["UTF-16", "save it as UTF-8"]);
     assert_contains(
         &parse_invalid(format!("solid \0{FACET}{FACET}").as_bytes()),
         &["begins with `solid`", "zero bytes"],

@@ -40,6 +40,7 @@ impl<'a> Reader<'a> {
             }
             b"facet" => self.facet(),
             b"endsolid" => self.close_solid(),
+            // the words of a facet read their own ends
             b"end" => {
                 self.expect("solid")?;
                 self.close_solid()
@@ -89,8 +90,8 @@ impl<'a> Reader<'a> {
             ];
             self.soup.vertices.push(DVec3::from_array(corner));
         }
-        self.expect_end("loop")?;
-        self.expect_end("facet")
+        self.expect_end("endloop")?;
+        self.expect_end("endfacet")
     }
 
     /// Reads `normal x y z outer loop`; the normal may be left out.
@@ -129,20 +130,16 @@ impl<'a> Reader<'a> {
         Err(self.words.error(format!("{} stands where `{wanted}` is expected", show(word))))
     }
 
-    /// Reads `endloop` or `end loop`, and so for a facet.
-    fn expect_end(&mut self, what: &str) -> Result<(), ReadError> {
-        let word = self.next(&format!("end{what}"))?;
-        let (end, rest) = word.split_at(word.len().min(3));
-        if !end.eq_ignore_ascii_case(b"end") {
-            return Err(self.corner_error(word));
-        }
-        if rest.is_empty() {
-            return self.expect(what);
-        }
-        if rest.eq_ignore_ascii_case(what.as_bytes()) {
+    /// Reads `endloop` or `endfacet`, or the same as two words.
+    fn expect_end(&mut self, wanted: &str) -> Result<(), ReadError> {
+        let word = self.next(wanted)?;
+        if word.eq_ignore_ascii_case(wanted.as_bytes()) {
             return Ok(());
         }
-        Err(self.words.error(format!("{} stands where `end{what}` is expected", show(word))))
+        if word.eq_ignore_ascii_case(b"end") {
+            return self.expect(wanted.trim_start_matches("end"));
+        }
+        Err(self.corner_error(word))
     }
 
     fn corner_error(&self, word: &[u8]) -> ReadError {
