@@ -69,8 +69,7 @@ fn triangle_count(declared: u32, body: &[u8]) -> Result<usize, String> {
         };
     };
     let declared_count = declared as usize;
-    // padding, or less than a triangle
-    if tail.len() < TRIANGLE || tail.iter().all(|&byte| byte == 0) {
+    if tail.len() < TRIANGLE || is_padding(tail) {
         return Ok(declared_count);
     }
     if fits(tail) {
@@ -103,6 +102,12 @@ fn mismatch(declared: u32, body: usize, what: &str) -> String {
         size(declared),
         HEADER + body
     )
+}
+
+/// Whether bytes are zeros or text, which triangles are not.
+fn is_padding(bytes: &[u8]) -> bool {
+    bytes.iter().all(|&byte| byte == 0)
+        || bytes.iter().all(|byte| byte.is_ascii_graphic() || byte.is_ascii_whitespace())
 }
 
 /// Whether 50 bytes can hardly be anything but a triangle: its corners differ, and its normal has the length 1 or 0.
