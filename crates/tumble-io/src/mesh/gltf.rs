@@ -10,7 +10,9 @@
 //! not apply.
 
 mod data;
+mod glb;
 mod schema;
+mod support;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -27,68 +29,32 @@ use schema::{Document, Node, Primitive};
 
 /// The largest JSON part (bytes): parsed entries take much more memory than their text.
 const MAX_JSON: usize = 128 << 20;
-/// Supported extensions that affect vertices.
-const SUPPORTED_EXTENSIONS: [&str; 1] = ["KHR_mesh_quantization"];
-/// Families of extensions that do not affect geometry.
-const IGNORED_EXTENSIONS: [&str; 6] =
-    ["KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "KHR_xmp", "MSFT_texture_"];
-
 /// Reads the bytes of a glTF file; `folder` holds its side files.
 pub(super) fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Parsed, ReadError> {
     let (json, binary_chunk) = split(bytes)?;
     if json.len() > MAX_JSON {
         return Err(error("the JSON part has more than 128 MiB; keep the data in a .bin or .glb"));
     }
-    let document: Document<'_> = serde_json::from_slice(json).map_err(|e| json_error(&e, bytes))?;
-    check_version(&document)?;
+    let document: Document<'_> = serde_json::from_slice(json)
+        .map_err(|e| support::other_version(json).unwrap_or_else(|| json_error(&e, bytes)))?;
+    support::check(&document)?;
 
     let buffers = Buffers::new(&document, binary_chunk, folder);
     let mut scene = Scene::new(&document, buffers, bytes.len());
-    scene.walk()?;
-    scene.finish()
+    scene.walk().and_then(|()| scene.finish()).map_err(|mut error| {
+        error.message += &support::compression_note(&document);
+        error
+    })
 }
 
 /// The JSON part and the binary part of a file.
 fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ReadError> {
-    if !bytes.starts_with(b"glTF") {
-        check_text(bytes, "a glTF that does not begin with `glTF`")?;
-        return Ok((bytes, None));
+    if bytes.starts_with(b"glTF") {
+        return glb::split(bytes);
     }
-    let at = |byte: usize, message: String| ReadError::new(Some(Place::Byte(byte as u64)), message);
-    let word = |byte: usize| {
-        let bytes = bytes.get(byte..).and_then(|rest| rest.first_chunk());
-        bytes.map(|b| u32::from_le_bytes(*b)).ok_or_else(|| {
-            at(byte, "the file ends within a header of the .glb: it is truncated".to_owned())
-        })
-    };
-    let (version, length) = (word(4)?, word(8)? as usize);
-    if version != 2 {
-        return Err(at(4, format!("the .glb has version {version}; only version 2 is read")));
-    }
-    let Some(bytes) = bytes.get(..length) else {
-        let found = bytes.len();
-        let message = format!("the .glb promises {length} bytes, but has {found}: it is truncated");
-        return Err(at(8, message));
-    };
-
-    // the first chunk is JSON, the second may be binary
-    let chunk = |start: usize| {
-        let (length, kind) = (word(start)? as usize, word(start + 4)?.to_le_bytes());
-        match bytes.get(start + 8..).and_then(|rest| rest.get(..length)) {
-            Some(content) => Ok((kind, content)),
-            None => Err(at(start, format!("a chunk promises {length} bytes, more than are left"))),
-        }
-    };
-    let (kind, json) = chunk(12)?;
-    if &kind != b"JSON" {
-        return Err(at(16, "the first chunk of the .glb must be JSON".to_owned()));
-    }
-    let after = 20 + json.len().next_multiple_of(4);
-    if after >= bytes.len() {
-        return Ok((json, None));
-    }
-    let (kind, content) = chunk(after)?;
-    Ok((json, (&kind == b"BIN\0").then_some(content)))
+    check_text(bytes, "a glTF that does not begin with `glTF`")?;
+    // skip a byte order mark
+    Ok((bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None))
 }
 
 fn json_error(e: &serde_json::Error, bytes: &[u8]) -> ReadError {
@@ -98,25 +64,6 @@ fn json_error(e: &serde_json::Error, bytes: &[u8]) -> ReadError {
         false => {
             ReadError::new(Some(Place::Line { line: e.line(), column: Some(e.column()) }), message)
         }
-    }
-}
-
-fn check_version(document: &Document<'_>) -> Result<(), ReadError> {
-    let version = &document.asset.version;
-    if version != "2" && !version.starts_with("2.") {
-        return Err(error(format!(
-            "the file is glTF {version:.20}; only glTF 2 is read: convert it first"
-        )));
-    }
-    let unknown = document.extensions_required.iter().find(|name| {
-        !SUPPORTED_EXTENSIONS.contains(&name.as_str())
-            && !IGNORED_EXTENSIONS.iter().any(|family| name.starts_with(family))
-    });
-    match unknown {
-        None => Ok(()),
-        Some(name) => Err(error(format!(
-            "the file requires the extension {name:.80}, which is not supported: export it without (compression)"
-        ))),
     }
 }
 

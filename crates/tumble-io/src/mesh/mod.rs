@@ -22,6 +22,7 @@
 //! `parse` that returns `Parsed`, and call it in [`parse_mesh`]. Then add samples to `tests/mesh_formats`
 //! and a target to `fuzz/targets`.
 //!
+//! A reader reads the whole mesh of a file or refuses it: a part that it does not understand may belong to the surface.
 //! Every reader accepts arbitrary bytes and returns a mesh or a [`ReadError`], in memory and time proportional to the size of the
 //! file. Lengths are in metres: the numbers of a file are used as they are.
 

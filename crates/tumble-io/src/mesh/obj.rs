@@ -5,7 +5,8 @@
 //! of them, in order, in double precision.
 //!
 //! Read: `v`, `f` (polygons of any size, negative indices, `v`, `v/vt`, `v//vn`, `v/vt/vn`), `o` and `g`
-//! (counted). Weights and colours after a position are ignored, and so are all other statements. A face may come before its vertices.
+//! (counted). Weights and colours after a position are ignored, and so are all other statements, except those that would add to the
+//! mesh. A face may come before its vertices.
 
 use glam::DVec3;
 
@@ -56,8 +57,8 @@ impl<'a> Reader<'a> {
 
     fn statement(&mut self, keyword: &[u8]) -> Result<(), ReadError> {
         match keyword {
-            b"v" => self.vertex(),
-            b"f" | b"fo" => self.face(),
+            b"v" | b"V" => self.vertex(),
+            b"f" | b"F" | b"fo" => self.face(),
             b"o" => {
                 self.object_count += 1;
                 Ok(())
@@ -66,6 +67,14 @@ impl<'a> Reader<'a> {
                 self.group_count += 1;
                 Ok(())
             }
+            // without these, a part of the mesh would be missing
+            b"surf" | b"bsp" | b"bzp" | b"cdp" => Err(self.words.error(format!(
+                "{} is a curved surface, which is not read; export the mesh as polygons",
+                show(keyword)
+            ))),
+            b"call" => Err(self.words.error(
+                "`call` inserts another file, which is not read; export the mesh as one file",
+            )),
             // other statements do not affect particles
             _ if is_plausible(keyword) => Ok(()),
             _ => Err(self.words.error(format!(

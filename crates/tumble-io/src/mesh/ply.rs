@@ -21,7 +21,8 @@ use super::text::{Style, Words};
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
     let mut words = Words::new(bytes, Style::Plain);
     let header = Header::read(&mut words)?;
-    header.check_size(bytes.len() - words.offset(), &words)?;
+    let start = data_start(bytes, words.offset());
+    header.check_size(bytes.len() - start, &words)?;
     let vertex_count = header.vertex_count().map_err(|message| words.line_error(message))?;
     let mut collector = MeshCollector { vertex_count, ..Default::default() };
     match header.encoding {
@@ -31,14 +32,24 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
             source.check_end()?;
         }
         Encoding::Binary { big_endian } => {
-            let at = words.offset();
-            collector.read(&header, &mut BinarySource { bytes, at, value_at: at, big_endian })?;
+            let mut source = BinarySource { bytes, at: start, value_at: start, big_endian };
+            collector.read(&header, &mut source)?;
+            source.check_end()?;
         }
     }
     let face_count = collector.faces.count;
     let triangles = collector.faces.finish(&collector.vertices);
     let (vertices, side_files) = (collector.vertices, Vec::new());
     Ok(Parsed { vertices, triangles, face_count, object_count: 1, side_files })
+}
+
+/// Where the data begin, behind the line break that ends the header.
+fn data_start(bytes: &[u8], after_header: usize) -> usize {
+    // in a header whose lines end with `\r`, a `\n` behind the last one is the first byte of the data
+    let lines_end_with_return =
+        matches!(bytes, [b'p', b'l', b'y', b'\r', next, ..] if *next != b'\n');
+    let took_two = bytes[..after_header].ends_with(b"\r\n");
+    after_header - usize::from(lines_end_with_return && took_two)
 }
 
 /// A source of element values, text or binary.
@@ -146,6 +157,19 @@ impl BinarySource<'_> {
             bytes.reverse();
         }
         Ok(bytes)
+    }
+
+    /// Checks that nothing but padding follows the last element.
+    fn check_end(&mut self) -> Result<(), ReadError> {
+        let rest = &self.bytes[self.at..];
+        if rest.iter().all(|byte| byte.is_ascii_whitespace() || *byte == 0) {
+            return Ok(());
+        }
+        self.value_at = self.at;
+        Err(self.error(format!(
+            "{} bytes follow the last element that the header promises: its counts are wrong, or something else was appended",
+            rest.len()
+        )))
     }
 }
 

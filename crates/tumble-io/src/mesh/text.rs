@@ -92,6 +92,18 @@ impl<'a> Words<'a> {
         width > 0
     }
 
+    /// The next word, of this line or of a later one, or `None` at the end of the text.
+    pub(super) fn next_word_of_text(&mut self) -> Option<&'a [u8]> {
+        loop {
+            if let Some(word) = self.next_word() {
+                return Some(word);
+            }
+            if !self.next_line() {
+                return None;
+            }
+        }
+    }
+
     /// The next word as a finite number; `what` names it in messages.
     pub(super) fn next_number(&mut self, what: &str) -> Result<f64, ReadError> {
         match self.next_word() {
@@ -154,9 +166,14 @@ pub(super) fn show(word: &[u8]) -> String {
     format!("`{shown}`")
 }
 
+/// Whether bytes begin with the byte order mark of UTF-16, as PowerShell writes it.
+pub(super) fn is_utf16(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff")
+}
+
 /// Rejects bytes that cannot be text, to give a clearer error than the parser would.
 pub(super) fn check_text(bytes: &[u8], format: &str) -> Result<(), ReadError> {
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+    if is_utf16(bytes) {
         return Err(ReadError::new(
             Some(Place::Byte(0)),
             format!(

@@ -53,6 +53,19 @@ fn each_instance_has_its_own_vertices() {
 }
 
 #[test]
+fn all_meshes_and_primitives_of_a_scene_are_read() {
+    let primitive = r#"{"attributes":{"POSITION":0},"indices":1}"#;
+    let one = format!(r#"{{"primitives":[{primitive}]}}"#);
+    let two = format!(r#"{{"primitives":[{primitive},{primitive}]}}"#);
+    let nodes = r#"{"children":[1,2]},{"mesh":1,"translation":[0,0,5]},{"mesh":0,"scale":[2,2,2]}"#;
+    let json = gltf_json(&data_uri(), nodes, "").replacen(&one, &format!("{one},{two}"), 1);
+    let file = super::parse_valid(Format::Gltf, json.as_bytes());
+    assert_eq!((file.object_count, file.face_count, file.mesh.vertices.len()), (2, 12, 8));
+    let (_, volume) = area_and_volume(&file);
+    assert!((volume - 0.75 * (2.0 + 8.0)).abs() < 1e-12, "{volume}");
+}
+
+#[test]
 fn the_transform_of_a_skinned_node_is_ignored() {
     let file = parse_with_nodes(r#"{"mesh":0,"skin":0,"translation":[10,0,0]}"#);
     assert_eq!(file.mesh.vertices[1], v(1.5, 0.0, 0.0));
@@ -101,6 +114,25 @@ fn sparse_quantised_and_interleaved_positions_are_read() {
         &[127, 0, 129, 9, 0, 0, 0, 9, 128, 127, 0, 9],
     );
     assert_eq!(quantised, [v(1.0, 0.0, -1.0), v(0.0, 0.0, 0.0), v(-1.0, 1.0, 0.0)]);
+    // signed words that are not normalised, interleaved with others, from the third byte on
+    let words: [i16; 15] = [9, 1, 2, 3, 9, 9, -4, 5, 6, 9, 9, 7, 8, -9, 9];
+    let interleaved = read(
+        r#"{"bufferView":0,"byteOffset":2,"componentType":5122,"count":3,"type":"VEC3"}"#,
+        r#"{"buffer":0,"byteLength":30,"byteStride":10}"#,
+        &words.map(i16::to_le_bytes).concat(),
+    );
+    assert_eq!(interleaved, [v(1.0, 2.0, 3.0), v(-4.0, 5.0, 6.0), v(7.0, 8.0, -9.0)]);
+    // the second of three vertices is replaced
+    let mut data: Vec<u8> =
+        [1.0_f32, 2.0, 3.0].map(|x| [x; 3]).concat().iter().flat_map(|c| c.to_le_bytes()).collect();
+    data.extend([1, 0, 0, 0]);
+    data.extend([8.0_f32; 3].iter().flat_map(|c| c.to_le_bytes()));
+    let replaced = read(
+        r#"{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":1,"componentType":5123},"values":{"bufferView":1,"byteOffset":4}}}"#,
+        r#"{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":16}"#,
+        &data,
+    );
+    assert_eq!(replaced, [v(1.0, 1.0, 1.0), v(8.0, 8.0, 8.0), v(3.0, 3.0, 3.0)]);
     // all zeros except vertex 2
     let mut data = vec![2, 0, 0, 0];
     data.extend([5.0_f32, 6.0, 7.0].iter().flat_map(|c| c.to_le_bytes()));
@@ -198,12 +230,25 @@ fn unsupported_required_extensions_are_rejected() {
     };
     assert_contains(
         &parse_invalid(&document("KHR_draco_mesh_compression")),
-        &["KHR_draco_mesh_compression", "not supported"],
+        &["compressed with Draco (KHR_draco_mesh_compression)", "not supported"],
     );
     assert_contains(
         &parse_invalid(&document("EXT_meshopt_compression")),
-        &["EXT_meshopt_compression"],
+        &["compressed with meshopt (EXT_meshopt_compression)"],
     );
+    assert_contains(&parse_invalid(&document("FB_ngon")), &["the extension FB_ngon"]);
+    // not required, but without uncompressed data
+    let used = r#","extensionsUsed":["KHR_draco_mesh_compression"]"#;
+    let json = gltf_json(&data_uri(), r#"{"mesh":0}"#, used);
+    super::parse_valid(Format::Gltf, json.as_bytes());
+    assert_contains(
+        &parse_invalid(&json.replace(r#""bufferView":0,"#, "")),
+        &["no bufferView", "Draco"],
+    );
+    // more instances than nodes
+    let used = r#","extensionsUsed":["EXT_mesh_gpu_instancing"]"#;
+    let json = gltf_json(&data_uri(), r#"{"mesh":0}"#, used);
+    assert_contains(&parse_invalid(&json), &["EXT_mesh_gpu_instancing", "not supported"]);
     super::parse_valid(Format::Gltf, document("KHR_materials_unlit").as_bytes());
 }
 
@@ -293,6 +338,51 @@ fn malformed_documents_are_rejected() {
     assert_contains(
         &super::parse_invalid(Format::Gltf, &nan),
         &["position 0 of accessor 0", "must be finite"],
+    );
+}
+
+#[test]
+fn chunks_need_not_be_aligned() {
+    let expected = super::parse_valid(Format::Gltf, &glb()).mesh;
+    for spaces in 0..4 {
+        let json = gltf_json("", r#"{"mesh":0}"#, "") + &" ".repeat(spaces);
+        for padding in [&b""[..], b" ", b"  ", b"   ", b"\0", b"\0\0", b"\0\0\0"] {
+            let json_chunk = json.as_bytes();
+            let chunk = |kind: &[u8], content: &[u8], counted: usize| {
+                [&(counted as u32).to_le_bytes(), kind, content].concat()
+            };
+            let padded = [json_chunk, padding].concat();
+            let is_aligned = padded.len().is_multiple_of(4);
+            let data = chunk(b"BIN\0", &gltf_data(), gltf_data().len());
+            let mut chunks = vec![chunk(b"JSON", &padded, padded.len())];
+            if is_aligned {
+                // the padding may also be left out of the length
+                chunks.push(chunk(b"JSON", &padded, json_chunk.len()));
+            }
+            for first in chunks {
+                let length = (12 + first.len() + data.len()) as u32;
+                let header = [&b"glTF\x02\0\0\0"[..], &length.to_le_bytes()].concat();
+                let bytes = [&header[..], &first, &data].concat();
+                assert_eq!(super::parse_valid(Format::Gltf, &bytes).mesh, expected);
+            }
+        }
+    }
+}
+
+#[test]
+fn other_versions_are_rejected_by_name() {
+    for json in [
+        r#"{"asset":{"version":"1.0"},"scene":"s","scenes":{"s":{"nodes":["n"]}},"meshes":{}}"#,
+        r#"{"scene":"s","scenes":{"s":{"nodes":["n"]}},"meshes":{"m":{"primitives":[]}}}"#,
+    ] {
+        assert_contains(&parse_invalid(json), &["the file is glTF 1.0", "only glTF 2", "convert"]);
+    }
+    let mut binary = glb();
+    binary[4] = 1;
+    assert_contains(&super::parse_invalid(Format::Gltf, &binary), &["glTF 1.0", "only glTF 2"]);
+    super::parse_valid(
+        Format::Gltf,
+        format!("\u{feff}{}", gltf_json(&data_uri(), r#"{"mesh":0}"#, "")).as_bytes(),
     );
 }
 

@@ -40,6 +40,23 @@ fn all_forms_of_face_corners_are_read() {
 }
 
 #[test]
+fn faces_may_come_before_vertices_and_names_in_any_encoding() {
+    let text = [b"o caf\xe9\nf 1/ 2/ 3/ 4/\nusemtl \xff\xfe\n", SQUARE.as_bytes()].concat();
+    let file = super::parse_valid(Format::Obj, &text);
+    assert_eq!(file.mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    let upper = parse_valid(&format!("{SQUARE}f 1 2 3 4\n").to_uppercase());
+    assert_eq!(upper.mesh, file.mesh);
+}
+
+#[test]
+fn geometry_that_is_not_read_is_rejected() {
+    for statement in ["surf 0 1 0 1 1 2 3 4", "bzp 1 2 3 4", "bsp 1 2 3 4", "cdp 1 2 3 4"] {
+        assert_contains(&parse_invalid(&format!("{SQUARE}{statement}\n")), &["line 5", "curved"]);
+    }
+    assert_contains(&parse_invalid(&format!("{SQUARE}call more.obj\n")), &["another file"]);
+}
+
+#[test]
 fn negative_indices_count_back_from_the_face() {
     let file = parse_valid("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5\nf -3 -2 -1\n");
     assert_eq!(file.mesh.triangles, [[0, 1, 2], [1, 2, 3]]);

@@ -79,6 +79,77 @@ fn truncated_binary_files_are_rejected() {
     assert_contains(&parse_invalid(&bytes[..bytes.len() - 1]), &["at byte", "truncated"]);
 }
 
+/// A triangle as binary PLY of either byte order, with other elements and lists around its vertices and faces.
+fn binary_between_others(big_endian: bool, list: &str, line_end: &str) -> Vec<u8> {
+    let endian = if big_endian { "big" } else { "little" };
+    let header = format!(
+        "ply\nformat binary_{endian}_endian 1.0\ncomment caf\u{e9}\nelement camera 1\nproperty list uchar short view\nproperty double focus\nelement vertex 3\nproperty list uint float weights\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar uchar colours\nproperty list ushort uint {list}\nproperty float quality\nelement edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+    );
+    // Latin-1: one byte for each character
+    let mut bytes: Vec<u8> =
+        header.replace('\n', line_end).chars().map(|c| c as u32 as u8).collect();
+    let mut push = |number: &[u8]| {
+        bytes.extend_from_slice(number);
+        if big_endian {
+            let start = bytes.len() - number.len();
+            bytes[start..].reverse();
+        }
+    };
+    // the first byte of the data is that of a line break
+    push(&[10]);
+    (0..10_i16).for_each(|i| push(&i.to_le_bytes()));
+    push(&0.5_f64.to_le_bytes());
+    for corner in [[1.0_f32, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
+        push(&2_u32.to_le_bytes());
+        [0.5, 0.25].iter().chain(&corner).for_each(|c: &f32| push(&c.to_le_bytes()));
+    }
+    push(&[3]);
+    (0..3).for_each(|_| push(&[255]));
+    push(&3_u16.to_le_bytes());
+    (0..3_u32).for_each(|i| push(&i.to_le_bytes()));
+    push(&0.75_f32.to_le_bytes());
+    (0..4_i32).for_each(|i| push(&i.to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn other_elements_and_lists_are_skipped_in_either_byte_order() {
+    for big_endian in [false, true] {
+        for list in ["vertex_index", "vertex_indices"] {
+            for line_end in ["\n", "\r\n", "\r"] {
+                let bytes = binary_between_others(big_endian, list, line_end);
+                let mesh = super::parse_valid(Format::Ply, &bytes).mesh;
+                assert_eq!(mesh.vertices, [v(1.0, 0.0, 0.0), v(0.0, 1.0, 0.0), v(0.0, 0.0, 1.0)]);
+                assert_eq!(mesh.triangles, [[0, 1, 2]]);
+                for length in 0..bytes.len() {
+                    parse_invalid(&bytes[..length]);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_follows_the_last_element_is_rejected() {
+    for format in ["binary_little_endian", "binary_big_endian"] {
+        let bytes = ply(format);
+        super::parse_valid(Format::Ply, &[&bytes[..], b"\r\n\0"].concat());
+        assert_contains(
+            &parse_invalid([&bytes[..], b"\x03abc"].concat()),
+            &[&format!("at byte {}: 4 bytes follow", bytes.len())],
+        );
+    }
+}
+
+#[test]
+fn elements_with_vertices_that_are_not_read_are_rejected() {
+    let body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let text = |name: &str| ascii(3, 1, body).replace("element face", &format!("element {name}"));
+    assert_contains(&parse_invalid(text("polygon")), &["`polygon`", "only `face` and `tristrips`"]);
+    // a scanner's grid of points
+    assert!(parse_valid(&text("range_grid")).mesh.triangles.is_empty());
+}
+
 #[test]
 fn malformed_headers_are_rejected() {
     assert_contains(&parse_invalid(""), &["empty"]);

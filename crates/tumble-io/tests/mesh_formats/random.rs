@@ -86,7 +86,12 @@ fn format_tokens() -> impl Strategy<Value = Vec<u8>> {
         "solid ",
         "vertex ",
         "facet ",
+        "normal 0 0 1 ",
+        "outer loop ",
+        "vertex 0 0 1 ",
+        "end ",
         "endloop\n",
+        "endfacet\n",
         "endsolid\n",
         "{",
         "}",
@@ -121,7 +126,10 @@ macro_rules! panic_tests {
 
 panic_tests! {
     obj: Format::Obj, b"v 0 0 0\nv 0 1 2\nv 3 4 5\n", vec![samples::obj(), b"v 0 0 0\nv 1 0 0\nv 0.2 0.2 0\nv 0 1 0\nf 1 2 3 4\nf -1/2/3 -2//1 -3/1\n".to_vec()];
-    stl: Format::Stl, b"solid ", vec![samples::stl_text(), samples::stl_binary(b""), samples::stl_binary(b"solid ")];
+    stl: Format::Stl, b"solid ", vec![
+        samples::stl_text(), samples::stl_binary(b""), samples::stl_binary(b"solid "), samples::stl_text().iter().map(|&b| if b == b'\n' { b' ' } else { b }).collect(),
+        [samples::stl_binary(b""), vec![1; 60]].concat(),
+    ];
     ply: Format::Ply, b"ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 7\nproperty list uint uchar vertex_index\nend_header\n", vec![
         samples::ply("ascii"), samples::ply("binary_little_endian"), samples::ply("binary_big_endian"),
         [samples::ply("ascii"), b"\n".to_vec()].concat(),

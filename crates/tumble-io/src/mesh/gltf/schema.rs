@@ -11,6 +11,8 @@ use serde::Deserialize;
 pub(super) struct Document<'a> {
     pub(super) asset: Asset,
     #[serde(default)]
+    pub(super) extensions_used: Vec<String>,
+    #[serde(default)]
     pub(super) extensions_required: Vec<String>,
     pub(super) scene: Option<usize>,
     #[serde(default)]

@@ -154,23 +154,30 @@ impl Header {
         }
     }
 
-    /// Checks that faces, if there are any, have a list of vertices.
+    /// Checks that faces have a list of vertices, and nothing else has: it would be missing in the mesh.
     fn check_faces(&self) -> Result<(), String> {
         let is_corners = |p: &Property| {
             matches!(p.name.as_slice(), b"vertex_indices" | b"vertex_index")
                 && p.list.is_some()
                 && !p.scalar.is_float()
         };
-        for element in &self.elements {
-            let is_face = matches!(element.name.as_slice(), b"face" | b"tristrips");
-            if is_face
-                && element.count > 0
-                && element.properties.iter().filter(|p| is_corners(p)).count() != 1
-            {
-                return Err(format!(
-                    "the element {} needs one list `vertex_indices` (or `vertex_index`) of whole numbers",
-                    show(&element.name)
-                ));
+        for element in self.elements.iter().filter(|element| element.count > 0) {
+            let list_count = element.properties.iter().filter(|p| is_corners(p)).count();
+            let name = show(&element.name);
+            match (element.name.as_slice(), list_count) {
+                (b"face" | b"tristrips", 1) => {}
+                (b"face" | b"tristrips", _) => {
+                    return Err(format!(
+                        "the element {name} needs one list `vertex_indices` (or `vertex_index`) of whole numbers"
+                    ));
+                }
+                // the grid of a range scan refers to its points only
+                (_, 0) | (b"range_grid", _) => {}
+                _ => {
+                    return Err(format!(
+                        "the element {name} has a list of vertices, but only `face` and `tristrips` are read: rename it if these are the faces, or remove it"
+                    ));
+                }
             }
         }
         Ok(())

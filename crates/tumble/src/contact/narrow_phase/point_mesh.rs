@@ -127,11 +127,11 @@ impl MeshQuery<'_> {
         let Some(signed_distance) = &mesh_body.signed_distance else { return Err(self.margin) };
         let position = pose.particle_position(body, point.particle);
         let local = mesh_pose.rotation.transpose() * (position - mesh_pose.position);
-        let surface = body
-            .contact_points
-            .as_deref()
-            .map(|points| SurfacePoint::new(points, body.points().index_of_slot(point.particle)));
-        let half_length = surface.as_ref().map_or(0.0, SurfacePoint::half_length);
+        let points = body.contact_points.as_deref();
+        let index = || body.points().index_of_slot(point.particle);
+        // most bodies have no segments, and most points do not touch
+        let segments = points.filter(|points| points.longest_half_segment() > 0.0);
+        let half_length = segments.map_or(0.0, |points| points.half_segment(index()).length());
         let contact_distance = pair.contact_distance + half_length;
         if !self.needs_distance
             && let Some(gap) = self.cheap_gap(signed_distance, point, local, contact_distance)
@@ -145,9 +145,10 @@ impl MeshQuery<'_> {
         if depth <= 0.0 {
             return Err(-depth);
         }
-        let Some(surface) = surface else {
+        let Some(points) = points else {
             return Ok((position, PointContact::plain(nearest.gradient, depth)));
         };
+        let surface = SurfacePoint::new(points, body.points().index_of_slot(point.particle));
         let to_mesh = mesh_pose.rotation.transpose() * pose.rotation;
         // 0: the next step has to look again
         let (offset, contact) =

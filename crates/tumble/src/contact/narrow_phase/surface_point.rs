@@ -58,11 +58,6 @@ impl<'a> SurfacePoint<'a> {
         Self { half_segment, normals: points.normals(index), fade: points.fade(index) }
     }
 
-    /// Half the length of its segment (m).
-    pub fn half_length(&self) -> f64 {
-        self.half_segment.length()
-    }
-
     /// The contact with a mesh, given the rotation into its frame, the place of the point there, and the result of a query
     /// there; and the vector from that place to the point of contact (m). `None` if it does not touch.
     pub fn contact(

@@ -147,7 +147,7 @@ impl Passage {
         let place = turn * all.get(index as usize) + shift;
         let nearest = self.mesh.query(place, 0, f64::INFINITY).unwrap();
         let point = SurfacePoint::new(&self.points, index);
-        let touches = nearest.distance < point.half_length();
+        let touches = nearest.distance < point.half_segment.length();
         let found = touches.then(|| point.contact(&self.mesh, turn, place, &nearest));
         let Some((offset, contact)) = found.flatten() else {
             return (0.0, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
