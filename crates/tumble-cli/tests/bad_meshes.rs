@@ -22,8 +22,8 @@ fn invalid_mesh_files_are_rejected() {
         (0..5000u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     dir.write("binary.obj", binary);
     let mut stl = vec![0u8; 80];
-    stl.extend(u32::MAX.to_le_bytes());
-    stl.extend([0u8; 100]);
+    stl.extend((u32::MAX - 1).to_le_bytes());
+    stl.extend([0u8; 107]);
     dir.write("huge.stl", stl);
     dir.write("cat.xyz", "");
     std::fs::create_dir(dir.path("folder.obj")).unwrap();
@@ -36,7 +36,7 @@ fn invalid_mesh_files_are_rejected() {
         ("nan.obj", &["nan.obj", "nan.obj:2:5"]),
         ("range.obj", &["range.obj:4:", "vertex 4", "only 3 vertices"]),
         ("binary.obj", &["binary.obj"]),
-        ("huge.stl", &["4294967295 triangles", "the file has 184"]),
+        ("huge.stl", &["4294967294 triangles", "the file has 191"]),
         ("cat.xyz", &[".obj, .stl, .ply, .gltf, .glb"]),
     ];
     for (mesh, parts) in cases {
