@@ -69,8 +69,11 @@ async function playing(browser) {
   const slider = await page.locator('#slider').boundingBox();
   await page.mouse.click(slider.x + slider.width / 2, slider.y + slider.height / 2);
   check('the slider scrubs', Math.abs((await time(page)) - 1.5) < 0.1, String(await time(page)));
-  const plot = await page.locator('#plot .area').boundingBox();
-  await page.mouse.click(plot.x + 58 + (plot.width - 68) * 0.25, plot.y + 40);
+  // on a busy machine the layout may still change between measuring and clicking
+  for (let attempt = 0; attempt < 3 && Math.abs((await time(page)) - 0.75) >= 0.02; attempt++) {
+    const plot = await page.locator('#plot .area').boundingBox();
+    await page.mouse.click(plot.x + 58 + (plot.width - 68) * 0.25, plot.y + 40);
+  }
   check('the plot scrubs', Math.abs((await time(page)) - 0.75) < 0.02, String(await time(page)));
   check('the plot shows values', (await page.locator('.tip').innerText()).includes('Kinetic'));
   await page.keyboard.press('l');

@@ -35,7 +35,10 @@ export class EnergyPlot {
     let isDown = false;
     const seek = (event) => {
       this.player.playing = false;
-      const t = this.timeAt(event.offsetX ?? 0);
+      // the layout may have changed since the last drawing
+      const box = area.getBoundingClientRect();
+      this.width = box.width;
+      const t = this.timeAt(event.clientX - box.left);
       const { recording } = this.player;
       const i = recording.indexAt(t);
       const next = recording.frames[Math.min(i + 1, recording.length - 1)];
