@@ -34,13 +34,13 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
 /// How high a particle rises after its first bounce (m).
 fn bounce_height(restitution: f64) -> Result<f64, Box<dyn Error + Send + Sync>> {
     let material = Material {
-        collision_stiffness: 1e6,
+        collision_stiffness: 1e7,
         damping: Damping::Restitution(restitution),
         ..Material::default()
     };
     let floor = WallPlane::new(DVec3::Y, 0.0).ok_or("the floor has no normal")?;
     let mut world = World::builder()
-        .dt(2e-5)
+        .dt(5e-6)
         .material(material)
         .wall(floor)
         .body(Body::new(Shape::from_particles(&[DROP * DVec3::Y])?))
