@@ -192,18 +192,23 @@ fn a_folder_that_cannot_be_created_is_status_1() {
     assert_contains(&outcome.stderr, &["cannot make the folder out/task1"]);
 }
 
+/// The message of a run that fails because no file may have more than so many KiB.
+fn message_at_file_limit(dir: &TestDir, limit: u32, arguments: &str) -> String {
+    let script = format!("trap '' XFSZ; ulimit -f {limit}; exec \"$0\" run {arguments}");
+    let output = Command::new("bash")
+        .current_dir(dir.0.path())
+        .args(["-c", &script, env!("CARGO_BIN_EXE_tumble")])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
 #[test]
 fn a_file_that_cannot_be_written_is_status_1_without_a_summary() {
     let dir = TestDir::new();
     // the scene cannot be written: files may have no bytes
-    let script = "trap '' XFSZ; ulimit -f 0; exec \"$0\" run task1 --duration 0.02 --out o";
-    let output = Command::new("bash")
-        .current_dir(dir.0.path())
-        .args(["-c", script, env!("CARGO_BIN_EXE_tumble")])
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(1), "{output:?}");
-    let message = String::from_utf8(output.stderr).unwrap();
+    let message = message_at_file_limit(&dir, 0, "task1 --duration 0.02 --out o");
     assert_contains(&message, &["cannot write o/scene.toml", "--out"]);
     assert!(dir.files("o").is_empty(), "{:?}", dir.files("o"));
 
@@ -234,16 +239,7 @@ fn temporary_files_do_not_follow_links() {
 #[test]
 fn a_trajectory_that_does_not_fit_is_status_1_without_a_summary() {
     let dir = TestDir::new();
-    // limit the file size to 32 KiB
-    let script =
-        "trap '' XFSZ; ulimit -f 32; exec \"$0\" run task2 --set output.interval=1e-3 --out o";
-    let output = Command::new("bash")
-        .current_dir(dir.0.path())
-        .args(["-c", script, env!("CARGO_BIN_EXE_tumble")])
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(1), "{output:?}");
-    let message = String::from_utf8(output.stderr).unwrap();
+    let message = message_at_file_limit(&dir, 32, "task2 --set output.interval=1e-3 --out o");
     assert_contains(&message, &["cannot write o/trajectory.csv", "--out"]);
     assert!(!dir.path("o/summary.json").exists());
 }

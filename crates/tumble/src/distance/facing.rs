@@ -33,7 +33,7 @@ pub(crate) trait Share {
 
 /// The cosine of the angle between the way to the closest point of a face and its normal from which on the way is through the
 /// face and not past it.
-const THROUGH: f64 = 0.5;
+pub(crate) const THROUGH: f64 = 0.5;
 
 /// Finds the triangle with the smallest weighted distance.
 struct WeightedQuery<'a, S> {

@@ -19,7 +19,7 @@ mod tree;
 mod triangle;
 
 pub use error::SurfaceError;
-pub(crate) use facing::{Exit, Share};
+pub(crate) use facing::{Exit, Share, THROUGH};
 pub(crate) use normal_cones::NormalCone;
 pub(crate) use oriented_surface::{Face, OrientedSurface};
 pub(crate) use patch::Patch;

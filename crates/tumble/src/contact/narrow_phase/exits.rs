@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::contact_points::MOST_NORMALS;
-use crate::distance::{Exit, NormalCone, Plane, Share};
+use crate::distance::{Exit, NormalCone, Plane, Share, THROUGH};
 use crate::smooth_step::{smooth_step, smooth_step_slope};
 use crate::{Nearest, SignedDistance};
 
@@ -13,9 +13,6 @@ const OPPOSING: [f64; 2] = [0.1, 0.4];
 
 /// The same angle for faces beside a point: those that face the same way are the far side of a plate.
 const ACROSS: [f64; 2] = [-0.8, -0.5];
-
-/// The angle, as a cosine, between a face and the way to it up to which the way certainly is through that face.
-const THROUGH: f64 = 0.5;
 
 /// A way to leave the mesh.
 #[derive(Clone, Copy)]
