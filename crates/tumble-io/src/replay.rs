@@ -19,7 +19,7 @@ use crate::checkpoint::read_checkpoint;
 use crate::plot::EnergyRow;
 use crate::run::{
     CHECKPOINT_FILE, CsvReader, ENERGY_FILE, RowError, SCENE_FILE, TRAJECTORY_FILE,
-    TRAJECTORY_HEADER, energy_header, parse_energy, parse_trajectory,
+    TRAJECTORY_HEADER, EnergyColumns, parse_energy, parse_trajectory,
 };
 use crate::scene::{LoadOptions, Loaded, Scene, SceneError, load_recorded_file};
 
@@ -105,14 +105,14 @@ impl Replay {
             scene.name = name;
         }
         let mut trajectory = CsvReader::open(folder.join(TRAJECTORY_FILE), TRAJECTORY_HEADER)?;
-        let has_work = scene.does_work();
-        let mut energy = CsvReader::open(folder.join(ENERGY_FILE), energy_header(has_work))?;
+        let columns = EnergyColumns::new(&scene);
+        let mut energy = CsvReader::open(folder.join(ENERGY_FILE), &columns.header())?;
         let (mut frames, mut ledger) = (Vec::<ReplayFrame>::new(), Vec::new());
         while let Some(frame) = read_frame(&mut trajectory, &world)? {
             if frames.last().is_some_and(|last| last.time >= frame.time) {
                 return Err(trajectory.error("has a time that does not increase").into());
             }
-            ledger.push(read_energy(&mut energy, frame.time, has_work)?);
+            ledger.push(read_energy(&mut energy, frame.time, columns)?);
             frames.push(frame);
         }
         if frames.is_empty() {
@@ -217,13 +217,17 @@ fn parse_pose(numbers: [f64; 16]) -> Option<Pose> {
 }
 
 /// Reads the row of `energy.csv` for the frame at `time` (s).
-fn read_energy(rows: &mut CsvReader, time: f64, has_work: bool) -> Result<EnergyRow, RowError> {
+fn read_energy(
+    rows: &mut CsvReader,
+    time: f64,
+    columns: EnergyColumns,
+) -> Result<EnergyRow, RowError> {
     let Some(row) = rows.next_row()? else {
         let problem = format!("has no row of t = {time} s; {RESUME_ADVICE}");
         return Err(if rows.is_truncated { truncated(rows) } else { rows.error(&problem) });
     };
-    let count = if has_work { "ten" } else { "nine" };
-    let row = parse_energy(&row, has_work)
+    let count = 9 + u8::from(columns.work) + u8::from(columns.numerical);
+    let row = parse_energy(&row, columns)
         .ok_or_else(|| rows.error(&format!("is not a row of {count} numbers")))?;
     if row.time != time {
         let problem =

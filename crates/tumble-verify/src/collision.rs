@@ -146,7 +146,9 @@ fn collision() -> Outcome {
             // `splitting` evaluates forces in the middle of a step, `euler` at its start
             let half = 0.5 * world.dt();
             let position = |(body, before): (tumble::BodyView, &DVec3)| match integrator {
-                Integrator::Splitting => body.position() - body.velocity() * half,
+                Integrator::Splitting | Integrator::Implicit => {
+                    body.position() - body.velocity() * half
+                }
                 Integrator::Euler => *before,
             };
             let positions: Vec<_> = world.bodies().zip(&before).map(position).collect();

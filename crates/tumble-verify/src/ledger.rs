@@ -25,6 +25,7 @@ fn scenes() -> Outcome {
             // thousands of contacts begin and end within a step
             Integrator::Splitting if bodies_collide => 5e-3,
             Integrator::Splitting => 1e-3,
+            Integrator::Implicit => 1e-2,
         };
         let (step_count, mut world) = (loaded.scene.step_count(), loaded.world);
         let start = world.energy();

@@ -14,7 +14,7 @@ mod weighted_shapes;
 use self::body_model::Shared;
 use self::checks::{behind_walls, duplicate_names, overlaps};
 use crate::{
-    BuildError, BuildErrors, MaterialOverride, Model, Overlaps, State, Surface, WallPlane, World,
+    BuildError, BuildErrors, Integrator, MaterialOverride, Model, Overlaps, State, Surface, WallPlane, World,
     critical_dt,
 };
 
@@ -41,10 +41,12 @@ impl WorldBuilder {
             velocity_damping_stiffness: self.velocity_damping_stiffness,
             dt: self.dt,
             integrator: self.integrator,
+            solver: self.solver,
             energy_tolerance: self.energy_tolerance,
             walls: self.walls.iter().map(|(wall, _)| *wall).collect(),
             wall_gap: smallest_gap(&self.walls),
-            has_body_contact: self.bodies.iter().any(|body| body.surface != Surface::None),
+            has_body_contact: self.bodies.iter().any(|body| body.surface != Surface::None)
+                || (self.integrator == Integrator::Implicit && !self.walls.is_empty()),
             bodies: Vec::with_capacity(self.bodies.len()),
             names: Vec::with_capacity(self.bodies.len()),
         };
@@ -68,7 +70,9 @@ impl WorldBuilder {
         }
         errors.extend(behind_walls(&model, &state, self.accept_start_in_walls));
         errors.extend(overlaps(&model, &state));
-        errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && !self.force).map(
+        // implicit steps are stable at any length
+        let is_bounded = self.integrator != Integrator::Implicit && !self.force;
+        errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && is_bounded).map(
             |critical| BuildError::Unstable {
                 dt: self.dt,
                 critical: critical.dt,

@@ -2,14 +2,15 @@
 
 use sha2::{Digest, Sha256};
 
-use crate::{PairSpring, State};
+use crate::{ContactImpulse, PairSpring, State};
 
 impl State {
     /// The first 16 bytes of the SHA-256 of the state, in hexadecimal.
     ///
     /// The state is hashed as little-endian numbers: step, time, then for each body position, `position_compensation`, velocity,
     /// orientation (w, x, y, z), `orientation_compensation`, angular momentum, `energy_excess` and friction springs, then
-    /// the friction springs between bodies, then the totals (with its work unless that is zero). Two states with
+    /// the friction springs between bodies and their impulses, then the totals (with its work unless that is zero, and with those of
+    /// the implicit solver if it ran). Two states with
     /// equal hashes are equal bit for bit.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();
@@ -40,12 +41,21 @@ impl State {
             }
             stretch.to_array().into_iter().for_each(&mut put);
         }
+        for ContactImpulse { normal, tangential } in &self.pair_impulses {
+            put(*normal);
+            tangential.to_array().into_iter().for_each(&mut put);
+        }
         let totals = &self.totals;
         if totals.work != 0.0 {
             put(totals.work);
         }
         [totals.drag, totals.dashpot, totals.slip, totals.max_depth].into_iter().for_each(&mut put);
         put(f64::from_bits(totals.evaluations));
+        if totals.iterations != 0 {
+            put(totals.numerical);
+            put(f64::from_bits(totals.iterations));
+            put(f64::from_bits(totals.not_converged));
+        }
         hasher.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
 }

@@ -81,7 +81,7 @@ pub use error::{BuildError, BuildErrors, StepError};
 pub use flight::DragModes;
 pub use glam::{DMat3, DQuat, DVec3};
 pub use material::{ContactLaw, Damping, Material, MaterialOverride, damping_ratio, restitution};
-pub use model::{BodyModel, Integrator, Model};
+pub use model::{BodyModel, Integrator, Model, SolverSettings};
 pub use motion::{Motion, Oscillation, Prescribed};
 pub use pair_material::{PairDamping, PairMaterial};
 pub use restore::StateError;
@@ -94,7 +94,9 @@ pub use shape::{
 };
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::MouseSpring;
-pub use state::{BodyState, ContactKind, FrictionSpring, PairSpring, RunTotals, State};
+pub use state::{
+    BodyState, ContactImpulse, ContactKind, FrictionSpring, PairSpring, RunTotals, State,
+};
 pub use static_load::{SoftSprings, StaticLoad, static_loads};
 pub use surface::{Overlaps, Surface};
 pub use wall::{WallBox, WallPlane};

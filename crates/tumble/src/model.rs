@@ -20,6 +20,8 @@ pub enum Integrator {
     Splitting,
     /// The basic system, lines 2 to 9 in order: semi-implicit Euler, explicit in rotation.
     Euler,
+    /// As [`Integrator::Splitting`], but the kick satisfies the contact law at the end of the step: stable at any step.
+    Implicit,
 }
 
 impl Integrator {
@@ -28,7 +30,29 @@ impl Integrator {
         match self {
             Self::Splitting => "splitting",
             Self::Euler => "euler",
+            Self::Implicit => "implicit",
         }
+    }
+
+    /// Whether a step is flight, kick and flight.
+    pub fn kicks(self) -> bool {
+        self != Self::Euler
+    }
+}
+
+/// When the iterations of [`Integrator::Implicit`] end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverSettings {
+    /// The relative change of the impulses in the last iteration.
+    pub tolerance: f64,
+    /// The largest number of iterations in a step. Steps that end so are counted in
+    /// [`RunTotals::not_converged`](crate::RunTotals::not_converged).
+    pub max_iterations: u32,
+}
+
+impl Default for SolverSettings {
+    fn default() -> Self {
+        Self { tolerance: 1e-4, max_iterations: 100 }
     }
 }
 
@@ -43,6 +67,8 @@ pub struct Model {
     pub dt: f64,
     /// The time integrator.
     pub integrator: Integrator,
+    /// When the iterations of the integrator `Implicit` end.
+    pub solver: SolverSettings,
     /// Steps in contact are refined until the energy error of each substep is below this fraction of the energy in
     /// the contact; `None` disables refinement.
     pub energy_tolerance: Option<f64>,
@@ -50,7 +76,7 @@ pub struct Model {
     pub walls: Vec<WallPlane>,
     /// The smallest distance between two opposite walls (m).
     pub wall_gap: Option<f64>,
-    /// Whether any body has a surface for contact with other bodies.
+    /// Whether any body has a surface for contact with other bodies, or all contacts are solved together.
     pub has_body_contact: bool,
     /// One entry per body. Identical bodies share an entry, which improves the use of caches.
     pub bodies: Vec<Arc<BodyModel>>,

@@ -1,7 +1,10 @@
 //! Checks whether a state, such as one from a checkpoint, fits a model.
 
 use crate::state::{PairOrder, pair_order};
-use crate::{BodyModel, ContactKind, FrictionSpring, Model, PairSpring, State};
+use crate::contact::contact_particles;
+use crate::{
+    BodyModel, ContactImpulse, ContactKind, FrictionSpring, Integrator, Model, PairSpring, State,
+};
 
 /// Why a state does not fit a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -116,15 +119,30 @@ impl State {
             check_springs(body, name, springs)?;
         }
         check_pair_springs(model, &self.pair_springs)?;
+        self.check_impulses(model)?;
         let totals = &self.totals;
         let values = [
             ("drag", totals.drag.is_finite()),
             ("dashpot", totals.dashpot.is_finite()),
             ("slip", totals.slip.is_finite()),
             ("work", totals.work.is_finite()),
+            ("numerical", totals.numerical.is_finite()),
             ("max_depth", totals.max_depth.is_finite()),
         ];
         check_values("", &values)
+    }
+}
+
+impl State {
+    /// Checks that there is one finite impulse for each spring if the model has impulses, and none otherwise.
+    fn check_impulses(&self, model: &Model) -> Result<(), StateError> {
+        let expected =
+            if model.integrator == Integrator::Implicit { self.pair_springs.len() } else { 0 };
+        let is_finite =
+            |p: &ContactImpulse| p.normal >= 0.0 && (p.tangential * p.normal).is_finite();
+        let impulses = &self.pair_impulses;
+        let ok = impulses.len() == expected && impulses.iter().all(is_finite);
+        check_values("", &[("pair_impulses", ok)])
     }
 }
 
@@ -179,8 +197,9 @@ fn check_pair_springs(model: &Model, springs: &[PairSpring]) -> Result<(), State
 fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)> {
     let PairSpring { first, second, kind, particle, other, .. } = *spring;
     let body = |index: u32| model.bodies.get(index as usize);
+    let solves = model.integrator == Integrator::Implicit;
     let slot = |index: u32, particle: u32| {
-        let particles = body(index)?.points();
+        let particles = contact_particles(body(index)?, kind);
         ((particle as usize) < particles.len()).then(|| particles.slot_of_index(particle))
     };
     let a = body(first)?;
@@ -188,7 +207,7 @@ fn pair_key(model: &Model, spring: &PairSpring) -> Option<(PairOrder, u32, u32)>
     let (particle, other) = match kind {
         ContactKind::SphereWall => {
             let is_possible =
-                a.has_spheres() && a.is_free() && (second as usize) < a.contacts.len();
+                (a.has_spheres() || solves) && a.is_free() && (second as usize) < a.contacts.len();
             (slot(first, particle).filter(|_| is_possible)?, 0)
         }
         _ => {

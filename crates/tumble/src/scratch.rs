@@ -1,6 +1,6 @@
 //! Buffers that a step reuses.
 
-use crate::contact::BodyContacts;
+use crate::contact::{BodyContacts, Solver};
 use crate::parallel::CHUNK;
 use crate::workspace::Workspace;
 use crate::{BodyForces, FrictionSpring};
@@ -18,6 +18,8 @@ pub struct Scratch {
     pub(crate) workspaces: Vec<Workspace>,
     /// Contacts between bodies, and of spheres with walls.
     pub(crate) body_contacts: BodyContacts,
+    /// The implicit solver.
+    pub(crate) solver: Solver,
 }
 
 impl Scratch {

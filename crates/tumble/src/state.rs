@@ -16,6 +16,9 @@ pub struct State {
     /// The friction springs between bodies, and between spheres and walls, in the order described at
     /// [`PairSpring`].
     pub pair_springs: Vec<PairSpring>,
+    /// The impulses of the latest kick at the contacts of `pair_springs`, which the next kick begins its iterations with; with the
+    /// integrator [`Implicit`](crate::Integrator::Implicit), else empty.
+    pub pair_impulses: Vec<ContactImpulse>,
     /// Accumulated losses and extremes.
     pub totals: RunTotals,
 }
@@ -108,6 +111,15 @@ pub struct PairSpring {
     pub stretch: DVec3,
 }
 
+/// The impulse of one contact in a kick, on the first body of the pair.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactImpulse {
+    /// Along the normal (N·s).
+    pub normal: f64,
+    /// Along the surfaces, world axes (N·s).
+    pub tangential: DVec3,
+}
+
 /// The sort key of a pair: the first body, walls before other bodies, the second body or wall, the kind.
 pub(crate) type PairOrder = (u32, bool, u32, ContactKind);
 
@@ -145,12 +157,18 @@ pub struct RunTotals {
     pub max_depth: f64,
     /// The number of kicks by contact forces, a measure of the cost of contact.
     pub evaluations: u64,
+    /// Energy lost by the implicit solution of the contact law, beyond what dashpots and slip take (J).
+    pub numerical: f64,
+    /// Iterations of the implicit solver.
+    pub iterations: u64,
+    /// Steps in which they ended before the impulses had converged.
+    pub not_converged: u64,
 }
 
 impl RunTotals {
     /// The sum of all losses (J).
     pub fn lost(&self) -> f64 {
-        self.drag + self.dashpot + self.slip
+        self.drag + self.dashpot + self.slip + self.numerical
     }
 }
 
@@ -162,6 +180,9 @@ impl std::ops::AddAssign for RunTotals {
         self.work += more.work;
         self.max_depth = self.max_depth.max(more.max_depth);
         self.evaluations += more.evaluations;
+        self.numerical += more.numerical;
+        self.iterations += more.iterations;
+        self.not_converged += more.not_converged;
     }
 }
 

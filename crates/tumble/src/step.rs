@@ -1,6 +1,6 @@
 //! The time step, as a list of stages.
 
-use crate::stage::{self, around_body_contact};
+use crate::stage::{self, around_body_contact, around_implicit_contact};
 use crate::{Batch, Integrator, Model, Scratch, State, StepError, for_each_batch, parallel};
 
 /// Advances `state` by one step of `model.dt`, or returns a [`StepError`] when the new state fails a check.
@@ -9,6 +9,7 @@ pub fn step(model: &Model, state: &mut State, scratch: &mut Scratch) -> Result<(
         match (model.integrator, model.energy_tolerance) {
             (Integrator::Splitting, None) => drift_kick_drift(model, state, scratch),
             (Integrator::Splitting, Some(tolerance)) => adaptive(model, state, scratch, tolerance),
+            (Integrator::Implicit, _) => implicit(model, state, scratch),
             (Integrator::Euler, _) => semi_implicit_euler(model, state, scratch),
         }
         state.step += 1;
@@ -29,6 +30,22 @@ fn drift_kick_drift(model: &Model, state: &mut State, scratch: &mut Scratch) {
     };
     around_body_contact(model, state, scratch, before, |batch| {
         stage::kick(batch, h);
+        stage::drift(batch, 0.5 * h);
+        stage::move_kinematic(batch, 0.5 * h, h);
+        stage::check(batch);
+    });
+}
+
+/// The same with a kick that satisfies the contact law at the end of the step: stable at any step.
+fn implicit(model: &Model, state: &mut State, scratch: &mut Scratch) {
+    let h = model.dt;
+    let before = |batch: &mut Batch| {
+        stage::find_free_flight(batch, h);
+        stage::drift_free_flight(batch, h);
+        stage::drift(batch, 0.5 * h);
+        stage::move_kinematic(batch, 0.0, 0.5 * h);
+    };
+    around_implicit_contact(model, state, scratch, before, |batch| {
         stage::drift(batch, 0.5 * h);
         stage::move_kinematic(batch, 0.5 * h, h);
         stage::check(batch);

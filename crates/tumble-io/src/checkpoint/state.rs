@@ -8,9 +8,12 @@
 //! - for each body: number of wall friction springs, and for each spring: wall, particle, anchor, stretch;
 //! - number of friction springs between bodies, and for each spring: first body, second body, kind of
 //!   contact (one byte), particle, other, stretch;
-//! - the totals.
+//! - number of impulses of these contacts, and for each: normal, tangential (absent before version 5);
+//! - the totals (the last three are absent before version 5).
 
-use tumble::{BodyState, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, RunTotals, State};
+use tumble::{
+    BodyState, ContactImpulse, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, RunTotals, State,
+};
 
 use super::OLDEST_VERSION;
 use super::bytes::Bytes;
@@ -23,6 +26,10 @@ const OLD_BODY_LENGTH: usize = 18 * 8;
 const SPRING_LENGTH: usize = 4 + 4 + 6 * 8;
 /// Bytes of a friction spring between bodies.
 const PAIR_SPRING_LENGTH: usize = 4 * 4 + 1 + 3 * 8;
+/// Bytes of an impulse.
+const IMPULSE_LENGTH: usize = 4 * 8;
+/// The first version with impulses.
+const FIRST_WITH_IMPULSES: u32 = 5;
 /// The kinds of contact, indexed by their byte.
 const CONTACT_KINDS: [ContactKind; 4] = [
     ContactKind::SphereWall,
@@ -34,9 +41,11 @@ const CONTACT_KINDS: [ContactKind; 4] = [
 /// Encodes a state.
 pub(super) fn encode(state: &State) -> Vec<u8> {
     // destructured completely, so that the compiler reports a new field here
-    let State { step, time, bodies, springs, pair_springs, totals } = state;
+    let State { step, time, bodies, springs, pair_springs, pair_impulses, totals } = state;
     let spring_count: usize = springs.iter().map(Vec::len).sum();
-    let spring_bytes = spring_count * SPRING_LENGTH + pair_springs.len() * PAIR_SPRING_LENGTH;
+    let spring_bytes = spring_count * SPRING_LENGTH
+        + pair_springs.len() * PAIR_SPRING_LENGTH
+        + pair_impulses.len() * IMPULSE_LENGTH;
     let mut out = Vec::with_capacity(80 + bodies.len() * (BODY_LENGTH + 8) + spring_bytes);
     out.extend(step.to_le_bytes());
     push_numbers(&mut out, [*time]);
@@ -78,9 +87,18 @@ pub(super) fn encode(state: &State) -> Vec<u8> {
         out.extend(other.to_le_bytes());
         push_numbers(&mut out, stretch.to_array());
     }
-    let RunTotals { drag, dashpot, slip, work, max_depth, evaluations } = *totals;
+    out.extend((pair_impulses.len() as u64).to_le_bytes());
+    for ContactImpulse { normal, tangential } in pair_impulses {
+        push_numbers(&mut out, [*normal]);
+        push_numbers(&mut out, tangential.to_array());
+    }
+    let RunTotals { drag, dashpot, slip, work, max_depth, evaluations, .. } = *totals;
     push_numbers(&mut out, [drag, dashpot, slip, work, max_depth]);
     out.extend(evaluations.to_le_bytes());
+    let RunTotals { numerical, iterations, not_converged, .. } = *totals;
+    push_numbers(&mut out, [numerical]);
+    out.extend(iterations.to_le_bytes());
+    out.extend(not_converged.to_le_bytes());
     out
 }
 
@@ -96,15 +114,23 @@ pub(super) fn decode(mut bytes: Bytes, version: u32) -> Option<State> {
     let bodies = (0..count).map(|_| body(&mut bytes, is_old)).collect::<Option<_>>()?;
     let springs = (0..count).map(|_| springs(&mut bytes)).collect::<Option<_>>()?;
     let pair_springs = pair_springs(&mut bytes)?;
-    let totals = RunTotals {
+    let has_impulses = version >= FIRST_WITH_IMPULSES;
+    let pair_impulses = if has_impulses { impulses(&mut bytes)? } else { Vec::new() };
+    let mut totals = RunTotals {
         drag: bytes.f64()?,
         dashpot: bytes.f64()?,
         slip: bytes.f64()?,
         work: bytes.f64()?,
         max_depth: bytes.f64()?,
         evaluations: bytes.u64()?,
+        ..RunTotals::default()
     };
-    bytes.is_empty().then_some(State { step, time, bodies, springs, pair_springs, totals })
+    if has_impulses {
+        totals.numerical = bytes.f64()?;
+        (totals.iterations, totals.not_converged) = (bytes.u64()?, bytes.u64()?);
+    }
+    let state = State { step, time, bodies, springs, pair_springs, pair_impulses, totals };
+    bytes.is_empty().then_some(state)
 }
 
 fn body(bytes: &mut Bytes, is_old: bool) -> Option<BodyState> {
@@ -141,6 +167,12 @@ fn pair_springs(bytes: &mut Bytes) -> Option<Vec<PairSpring>> {
         })
     };
     (0..count).map(spring).collect()
+}
+
+fn impulses(bytes: &mut Bytes) -> Option<Vec<ContactImpulse>> {
+    let count = bytes.count(IMPULSE_LENGTH)?;
+    let impulse = |_| Some(ContactImpulse { normal: bytes.f64()?, tangential: vector(bytes)? });
+    (0..count).map(impulse).collect()
 }
 
 fn vector(bytes: &mut Bytes) -> Option<DVec3> {

@@ -22,6 +22,8 @@ pub struct EnergyRow {
     pub dashpot: f64,
     /// Cumulative energy lost to slip (J).
     pub slip: f64,
+    /// Cumulative energy lost by the implicit solution of the contact law (J).
+    pub numerical: f64,
     /// Cumulative work done by bodies with prescribed motion (J).
     pub work: f64,
     /// Sum of energies and losses minus the work (J). It would be constant without numerical
@@ -71,14 +73,15 @@ struct Series {
 const TOTAL: Series = Series { name: "total", colour: RGBColor(0, 0, 0), value: |row| row.total };
 const RESIDUAL: Series =
     Series { name: "residual", colour: RGBColor(90, 90, 90), value: |row| row.residual };
-const TERMS: [Series; 7] = [
+const TERMS: [Series; 8] = [
     Series { name: "kinetic", colour: RGBColor(0, 114, 178), value: |row| row.kinetic },
     Series { name: "gravitational", colour: RGBColor(230, 159, 0), value: |row| row.gravitational },
     Series { name: "elastic", colour: RGBColor(0, 158, 115), value: |row| row.elastic },
     Series { name: "lost to drag", colour: RGBColor(86, 180, 233), value: |row| row.drag },
     Series { name: "lost to dashpots", colour: RGBColor(204, 121, 167), value: |row| row.dashpot },
     Series { name: "lost to slip", colour: RGBColor(213, 94, 0), value: |row| row.slip },
-    // olive, distinct from the other six
+    Series { name: "numerical", colour: RGBColor(120, 94, 240), value: |row| row.numerical },
+    // olive, distinct from the others
     Series { name: "work put in", colour: RGBColor(140, 130, 30), value: |row| row.work },
 ];
 

@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::PathBuf;
 
+use super::energy_ledger::EnergyColumns;
 use crate::plot::EnergyRow;
 
 /// Length limit of a row (bytes).
@@ -99,12 +100,16 @@ impl CsvReader {
     }
 }
 
-/// Parses a row of `energy.csv`, with or without the column `work`.
-pub(crate) fn parse_energy(row: &str, has_work: bool) -> Option<EnergyRow> {
-    let (row, work) = match row.rsplit_once(',') {
-        Some((row, work)) if has_work => (row, work.parse().ok()?),
-        _ => (row, 0.0),
+/// Parses a row of `energy.csv` with these columns.
+pub(crate) fn parse_energy(row: &str, columns: EnergyColumns) -> Option<EnergyRow> {
+    let last = |row: &'_ str, is_there: bool| match row.rsplit_once(',') {
+        Some((rest, value)) if is_there => Some((rest.len(), value.parse().ok()?)),
+        _ => Some((row.len(), 0.0)),
     };
+    let (end, work) = last(row, columns.work)?;
+    let row = &row[..end];
+    let (end, numerical) = last(row, columns.numerical)?;
+    let row = &row[..end];
     let [time, kinetic, gravitational, elastic, drag, dashpot, slip, total, residual] =
         parse_numbers::<9>(row)?;
     Some(EnergyRow {
@@ -115,6 +120,7 @@ pub(crate) fn parse_energy(row: &str, has_work: bool) -> Option<EnergyRow> {
         drag,
         dashpot,
         slip,
+        numerical,
         work,
         total,
         residual,

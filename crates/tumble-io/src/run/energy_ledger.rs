@@ -2,24 +2,38 @@
 
 use std::io::{self, Write};
 
-use tumble::Energy;
+use tumble::{Energy, Integrator};
 
 use super::trajectory::write_row;
 use crate::plot::EnergyRow;
+use crate::scene::Scene;
 
-/// Columns of `energy.csv` for a scene in which nothing does work.
+/// The columns of `energy.csv` that every run has.
 pub const ENERGY_HEADER: &str =
     "time,kinetic,gravitational,elastic,drag,dashpot,slip,total,residual";
 
-/// Columns of `energy.csv` for a scene in which a body or belt may do work.
-const HEADER_WITH_WORK: &str =
-    "time,kinetic,gravitational,elastic,drag,dashpot,slip,total,residual,work";
+/// The columns of `energy.csv` that only some runs have, after the others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EnergyColumns {
+    /// `numerical`, with the integrator `implicit`.
+    pub numerical: bool,
+    /// `work`, if [`Scene::does_work`].
+    pub work: bool,
+}
 
-/// Columns of `energy.csv`.
-///
-/// The column `work` exists only if [`Scene::does_work`](crate::scene::Scene::does_work).
-pub fn energy_header(has_work: bool) -> &'static str {
-    if has_work { HEADER_WITH_WORK } else { ENERGY_HEADER }
+impl EnergyColumns {
+    /// Those of the runs of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let numerical = scene.integrator == Integrator::Implicit;
+        Self { numerical, work: scene.does_work() }
+    }
+
+    /// The first line of `energy.csv`.
+    pub fn header(self) -> String {
+        let names = [(self.numerical, ",numerical"), (self.work, ",work")];
+        let names = names.into_iter().filter_map(|(is_there, name)| is_there.then_some(name));
+        ENERGY_HEADER.to_owned() + &names.collect::<String>()
+    }
 }
 
 /// The ledger row at `time` (s). The residual is the total minus `energy_start` (J).
@@ -32,6 +46,7 @@ pub fn energy_row(time: f64, energy: &Energy, energy_start: f64) -> EnergyRow {
         drag: energy.drag,
         dashpot: energy.dashpot,
         slip: energy.slip,
+        numerical: energy.numerical,
         work: energy.work,
         total: energy.total(),
         residual: energy.total() - energy_start,
@@ -42,11 +57,13 @@ pub fn energy_row(time: f64, energy: &Energy, energy_start: f64) -> EnergyRow {
 pub(super) fn write_energy(
     out: &mut impl Write,
     row: &EnergyRow,
-    has_work: bool,
+    columns: EnergyColumns,
 ) -> io::Result<()> {
-    let EnergyRow { time, kinetic, gravitational, elastic, drag, .. } = *row;
-    let EnergyRow { dashpot, slip, work, total, residual, .. } = *row;
-    let numbers = [kinetic, gravitational, elastic, drag, dashpot, slip, total, residual, work];
-    let count = if has_work { 9 } else { 8 };
-    write_row(out, (time, None), &numbers[..count])
+    let EnergyRow { kinetic, gravitational, elastic, drag, dashpot, slip, .. } = *row;
+    let EnergyRow { time, numerical, work, total, residual, .. } = *row;
+    let common = [kinetic, gravitational, elastic, drag, dashpot, slip, total, residual];
+    let others = [(columns.numerical, numerical), (columns.work, work)];
+    let others = others.into_iter().filter_map(|(is_there, value)| is_there.then_some(value));
+    let numbers: Vec<f64> = common.into_iter().chain(others).collect();
+    write_row(out, (time, None), &numbers)
 }

@@ -49,7 +49,7 @@ mod summary;
 mod trajectory;
 
 pub use csv_reader::RowError;
-pub use energy_ledger::{ENERGY_HEADER, energy_header, energy_row};
+pub use energy_ledger::{ENERGY_HEADER, EnergyColumns, energy_row};
 pub use error::RunError;
 pub use folder::{CHECKPOINT_FILE, RunFolder};
 pub use frame_buffers::FrameHistory;

@@ -3,7 +3,7 @@
 use tumble::{DQuat, DVec3, World, Wrench};
 
 use super::csv_reader::{CsvReader, RowError, parse_contact, parse_energy, parse_trajectory};
-use super::energy_ledger::energy_header;
+use super::energy_ledger::EnergyColumns;
 use super::folder::{CONTACTS_FILE, ENERGY_FILE, RunFolder, TRAJECTORY_FILE};
 use super::frame_buffers::FrameBuffers;
 use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
@@ -37,9 +37,9 @@ impl RecordedRows {
             return Ok(None);
         }
         let mut trajectory = CsvReader::open(folder.file_path(TRAJECTORY_FILE), TRAJECTORY_HEADER)?;
-        let has_work = scene.does_work();
-        let parse = |row: String| parse_energy(&row, has_work).ok_or(());
-        let mut energy = CsvReader::open(folder.file_path(ENERGY_FILE), energy_header(has_work))?;
+        let columns = EnergyColumns::new(scene);
+        let parse = |row: String| parse_energy(&row, columns).ok_or(());
+        let mut energy = CsvReader::open(folder.file_path(ENERGY_FILE), &columns.header())?;
         let mut contacts = ContactReader::open(folder)?;
         let mut frames = FrameBuffers::new(world.body_count());
         let last = world.state().step;

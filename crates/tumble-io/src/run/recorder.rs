@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use tumble::{State, World};
 
-use super::energy_ledger::{energy_header, energy_row};
+use super::energy_ledger::{EnergyColumns, energy_row};
 use super::error::RunError;
 use super::folder::{
     CHECKPOINT_FILE, CONTACTS_FILE, ENERGY_FILE, ENERGY_PLOT_FILE, MOTION_PAGE_FILE,
@@ -43,16 +43,17 @@ impl<'a> Recorder<'a> {
         scene_toml: String,
         energy_start: f64,
     ) -> Result<Self, RunError> {
-        let create = |name, header| {
+        let columns = EnergyColumns::new(scene);
+        let create = |name, header: &str| {
             let mut file = folder.create_file(name)?;
             writeln!(file, "{header}").map_err(|e| write_error(folder, name, e))?;
             Ok(file)
         };
         let files = CsvFiles {
             trajectory: create(TRAJECTORY_FILE, TRAJECTORY_HEADER)?,
-            energy: create(ENERGY_FILE, energy_header(scene.does_work()))?,
+            energy: create(ENERGY_FILE, &columns.header())?,
             contacts: create(CONTACTS_FILE, CONTACTS_HEADER)?,
-            has_work: scene.does_work(),
+            columns,
         };
         let frames = FrameBuffers::new(world.body_count());
         let writer = RunWriter::start(folder, files, frames, body_names(world));
@@ -82,7 +83,7 @@ impl<'a> Recorder<'a> {
             trajectory: open(TRAJECTORY_FILE, trajectory_bytes)?,
             energy: open(ENERGY_FILE, energy_bytes)?,
             contacts: open(CONTACTS_FILE, contacts_bytes)?,
-            has_work: scene.does_work(),
+            columns: EnergyColumns::new(scene),
         };
         let writer = RunWriter::start(folder, files, frames, body_names(world));
         Ok(Self::new(folder, writer, scene_toml, energy_start))

@@ -165,11 +165,12 @@ fn notes(scene: &Scene) -> Vec<String> {
 
 /// Copies a state into `copy`, reusing its memory.
 fn copy_state(copy: &mut State, state: &State) {
-    let State { step, time, bodies, springs, pair_springs, totals } = state;
+    let State { step, time, bodies, springs, pair_springs, pair_impulses, totals } = state;
     (copy.step, copy.time, copy.totals) = (*step, *time, *totals);
     copy.bodies.clone_from(bodies);
     copy.springs.clone_from(springs);
     copy.pair_springs.clone_from(pair_springs);
+    copy.pair_impulses.clone_from(pair_impulses);
 }
 
 /// Steps between two reads of the clock: about 100,000 particle updates.

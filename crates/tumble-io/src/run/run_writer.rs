@@ -6,6 +6,7 @@ use std::io::{self, BufWriter, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
+use super::energy_ledger::EnergyColumns;
 use super::energy_ledger::write_energy;
 use super::error::RunError;
 use super::folder::{CONTACTS_FILE, ENERGY_FILE, RunFolder, TRAJECTORY_FILE};
@@ -25,8 +26,8 @@ pub(super) struct CsvFiles {
     pub trajectory: BufWriter<File>,
     pub energy: BufWriter<File>,
     pub contacts: BufWriter<File>,
-    /// Whether `energy.csv` has the column `work`.
-    pub has_work: bool,
+    /// The columns of `energy.csv`.
+    pub columns: EnergyColumns,
 }
 
 /// One frame of a run.
@@ -160,11 +161,11 @@ impl Worker {
 
     fn write(&mut self, frame: RunFrame) -> Result<(), RunError> {
         let RunFrame { step, row, bodies } = frame;
-        let CsvFiles { trajectory, energy, contacts, has_work } = &mut self.files;
+        let CsvFiles { trajectory, energy, contacts, columns } = &mut self.files;
         let failed = |name| move |error| (name, error);
         write_frame(trajectory, row.time, &self.names, &bodies)
             .map_err(failed(TRAJECTORY_FILE))
-            .and_then(|()| write_energy(energy, &row, *has_work).map_err(failed(ENERGY_FILE)))
+            .and_then(|()| write_energy(energy, &row, *columns).map_err(failed(ENERGY_FILE)))
             .and_then(|()| {
                 write_contacts(contacts, row.time, &self.names, &bodies)
                     .map_err(failed(CONTACTS_FILE))

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use serde::Serialize;
-use tumble::{World, contact_time, critical_dt};
+use tumble::{Integrator, World, contact_time, critical_dt};
 
 use crate::plot::EnergyRow;
 use crate::scene::Scene;
@@ -38,6 +38,28 @@ impl ContactSteps {
                 "the contacts of \"{body}\" last about {seconds:.2e} s, {steps:.1} steps of dt = {dt} s: too few for its \
                  restitution; set dt to {enough:.2e} or less"
             )
+        })
+    }
+}
+
+/// What the implicit solver did.
+#[derive(Clone, Debug, Serialize)]
+pub struct SolverSummary {
+    /// Iterations in all steps.
+    pub iterations: u64,
+    /// Steps in which they ended before the impulses had converged.
+    pub steps_not_converged: u64,
+    /// Energy lost to the implicit solution of the contact law (J).
+    pub energy_numerical: f64,
+}
+
+impl SolverSummary {
+    fn new(world: &World) -> Option<Self> {
+        let totals = &world.state().totals;
+        (world.model().integrator == Integrator::Implicit).then_some(Self {
+            iterations: totals.iterations,
+            steps_not_converged: totals.not_converged,
+            energy_numerical: totals.numerical,
         })
     }
 }
@@ -80,6 +102,10 @@ pub struct Summary {
     pub critical_dt: Option<f64>,
     /// How well the time step resolves contacts with dashpots, if there are any.
     pub contact_time: Option<ContactSteps>,
+    /// Of the integrator `implicit`: iterations of the solver, steps in which they did not converge, and the energy lost to the
+    /// implicit solution (J).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solver: Option<SolverSummary>,
     /// Number of evaluations of the contact forces of a body.
     pub force_evaluations: u64,
     /// Largest penetration depth of the run (m), over all force evaluations and the last state.
@@ -120,6 +146,7 @@ impl Summary {
             energy_residual: energy.residual,
             critical_dt: critical_dt(world.model()).map(|critical| critical.dt),
             contact_time: ContactSteps::new(world),
+            solver: SolverSummary::new(world),
             force_evaluations: world.state().totals.evaluations,
             max_depth: world.state().totals.max_depth.max(depths.bodies).max(depths.walls),
             body_depth_end: depths.bodies,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use tumble::{
     DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Overlaps, Prescribed,
-    Primitive, Sampling, Surface, WallBox, WallPlane,
+    Primitive, Sampling, SolverSettings, Surface, WallBox, WallPlane,
 };
 
 /// The names of the mass models in scene files.
@@ -28,6 +28,8 @@ pub struct Scene {
     pub gravity: DVec3,
     /// Drag c of the medium on every particle (N·s/m).
     pub velocity_damping_stiffness: f64,
+    /// When the iterations of `implicit` end.
+    pub solver: SolverSettings,
     /// Bound on the energy error of a sub-step in contact, relative to kinetic and elastic energy.
     pub energy_tolerance: Option<f64>,
     /// Default material of contacts.

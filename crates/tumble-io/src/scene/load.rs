@@ -156,6 +156,7 @@ fn world(
         .velocity_damping_stiffness(scene.velocity_damping_stiffness)
         .dt(scene.dt)
         .integrator(scene.integrator)
+        .solver(scene.solver)
         .energy_tolerance(scene.energy_tolerance)
         .force(scene.force)
         .overlaps(scene.overlaps)

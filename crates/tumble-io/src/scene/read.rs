@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use tumble::{DVec3, Integrator, Material, Overlaps, WallBox, WallPlane};
+use tumble::{DVec3, Integrator, Material, Overlaps, SolverSettings, WallBox, WallPlane};
 
 use super::body::{self, MAX_COPIES};
 use super::common::{is_unit, material, orientation};
@@ -48,6 +48,7 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
         duration,
         dt,
         integrator: integrator(&top),
+        solver: top.table("solver").map_or_else(SolverSettings::default, solver),
         gravity: top.vector("gravity").unwrap_or(DVec3::new(0.0, -9.8, 0.0)),
         velocity_damping_stiffness: top
             .number("velocity_damping_stiffness", Range::NotNegative)
@@ -89,9 +90,22 @@ fn bodies(top: &Reader, problems: &RefCell<Vec<Problem>>) -> (Vec<BodyScene>, Ve
     (bodies, is_valid)
 }
 
+fn solver(reader: Reader) -> SolverSettings {
+    let default = SolverSettings::default();
+    let iterations = reader.integer("max_iterations", 1, i64::from(u32::MAX));
+    let max_iterations = iterations.and_then(|count| u32::try_from(count).ok());
+    let settings = SolverSettings {
+        tolerance: reader.number("tolerance", Range::BelowOne).unwrap_or(default.tolerance),
+        max_iterations: max_iterations.unwrap_or(default.max_iterations),
+    };
+    reader.finish();
+    settings
+}
+
 fn integrator(top: &Reader) -> Integrator {
-    const NAMES: [&str; 2] = ["splitting", "euler"];
+    const NAMES: [&str; 3] = ["splitting", "implicit", "euler"];
     match top.choice("integrator", &NAMES) {
+        Some("implicit") => Integrator::Implicit,
         Some("euler") => Integrator::Euler,
         Some("splitting") => Integrator::Splitting,
         _ => Integrator::default(),

@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 use tumble::{
-    DQuat, DVec3, Damping, MaterialOverride, Oscillation, Overlaps, Primitive, Sampling, Surface,
+    DQuat, DVec3, Damping, Integrator, MaterialOverride, Oscillation, Overlaps, Primitive, Sampling, Surface,
     WallBox, WallPlane,
 };
 
@@ -24,6 +24,12 @@ impl Scene {
         put(&mut top, "duration", self.duration);
         put(&mut top, "dt", self.dt);
         put(&mut top, "integrator", self.integrator.name());
+        if self.integrator == Integrator::Implicit {
+            let mut solver = Table::new();
+            put(&mut solver, "tolerance", self.solver.tolerance);
+            put(&mut solver, "max_iterations", i64::from(self.solver.max_iterations));
+            put(&mut top, "solver", solver);
+        }
         put(&mut top, "gravity", vector(self.gravity));
         put(&mut top, "velocity_damping_stiffness", self.velocity_damping_stiffness);
         if let Some(tolerance) = self.energy_tolerance {

@@ -7,7 +7,7 @@ use super::description::WorldBuilder;
 use crate::contact::wall::{WallDepth, depth_in_wall};
 use crate::kinematics::Kinematics;
 use crate::{
-    BodyModel, BodyState, BuildError, Damping, Integrator, Material, Model, Motion, State, Surface,
+    BodyModel, BodyState, BuildError, Damping, Integrator, Material, Model, Motion, SolverSettings, State, Surface,
 };
 
 impl WorldBuilder {
@@ -20,6 +20,11 @@ impl WorldBuilder {
         };
         let c = self.velocity_damping_stiffness;
         check("dt", self.dt > 0.0 && self.dt.is_finite(), &self.dt, "a number of seconds above 0");
+        let SolverSettings { tolerance, max_iterations } = self.solver;
+        let ok = tolerance > 0.0 && tolerance < 1.0;
+        check("solver.tolerance", ok, &tolerance, "above 0 and below 1");
+        let ok = max_iterations > 0;
+        check("solver.max_iterations", ok, &max_iterations, "a whole number, 1 or more");
         check("gravity", self.gravity.is_finite(), &self.gravity, "three finite numbers (m/s²)");
         let allowed = "a number of N·s/m, 0 or more";
         check("velocity_damping_stiffness", c >= 0.0 && c.is_finite(), &c, allowed);
@@ -34,7 +39,7 @@ impl WorldBuilder {
             check("energy_tolerance", ok, &tolerance, "above 0 and below 1");
             let refines = self.integrator == Integrator::Splitting;
             let allowed =
-                "left out with the integrator \"euler\": only \"splitting\" refines its steps";
+                "left out with the integrators \"euler\" and \"implicit\": only \"splitting\" refines its steps";
             check("energy_tolerance", refines, &tolerance, allowed);
             let alone = self.bodies.iter().all(|body| body.surface == Surface::None);
             let allowed = "left out where bodies collide with each other: it refines the steps of each body separately, so use a smaller `dt` instead";

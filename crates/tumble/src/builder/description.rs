@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use super::body::Body;
-use crate::{Integrator, Material, MaterialOverride, Overlaps, WallBox, WallPlane};
+use crate::{
+    Integrator, Material, MaterialOverride, Overlaps, SolverSettings, WallBox, WallPlane,
+};
 
 /// The description of a world; [`WorldBuilder::build`] checks it and makes the world.
 #[derive(Clone, Debug)]
@@ -12,6 +14,7 @@ pub struct WorldBuilder {
     pub(super) velocity_damping_stiffness: f64,
     pub(super) dt: f64,
     pub(super) integrator: Integrator,
+    pub(super) solver: SolverSettings,
     pub(super) energy_tolerance: Option<f64>,
     pub(super) force: bool,
     pub(super) material: Material,
@@ -29,6 +32,7 @@ impl Default for WorldBuilder {
             velocity_damping_stiffness: 0.0,
             dt: 1e-3,
             integrator: Integrator::default(),
+            solver: SolverSettings::default(),
             energy_tolerance: None,
             force: false,
             material: Material::default(),
@@ -62,6 +66,12 @@ impl WorldBuilder {
     /// The time integrator.
     pub fn integrator(mut self, integrator: Integrator) -> Self {
         self.integrator = integrator;
+        self
+    }
+
+    /// When the iterations of [`Integrator::Implicit`] end.
+    pub fn solver(mut self, settings: SolverSettings) -> Self {
+        self.solver = settings;
         self
     }
 

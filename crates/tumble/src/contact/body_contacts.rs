@@ -12,9 +12,10 @@ use super::neighbour_list::{ChunkNeighbours, NeighbourLists};
 use super::pair::Pair;
 use super::pose::BodyPose;
 use super::since_kick::SinceKick;
+use super::solver::{Found, Solver};
 use super::tunnelling::TunnellingRisk;
 use crate::parallel::{self, CHUNK};
-use crate::{BodyForces, ContactKind, Model, PairSpring, State};
+use crate::{BodyForces, ContactKind, Integrator, Model, PairSpring, State};
 
 /// Contacts between bodies, and of spheres with walls. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -39,7 +40,8 @@ impl BodyContacts {
     /// Rebuilds the neighbour lists if a body has moved by its skin. The poses are those of `state` already.
     pub fn update_neighbour_lists(&mut self, model: &Model, state: &State, since_kick: &SinceKick) {
         let has_poses = self.poses.len() == model.bodies.len();
-        let is_valid = |pose: &BodyPose| pose.path <= pose.list_valid_until; // false for NaN
+        // false for NaN
+        let is_valid = |pose: &BodyPose| pose.path + pose.reach <= pose.list_valid_until;
         if has_poses && self.poses.iter().all(is_valid) {
             return;
         }
@@ -69,7 +71,8 @@ impl BodyContacts {
         since_kick: SinceKick,
     ) {
         self.springs.clear();
-        let context = ContactContext { model, poses: &self.poses, springs, since_kick };
+        let is_solved = model.integrator == Integrator::Implicit;
+        let context = ContactContext { model, poses: &self.poses, springs, since_kick, is_solved };
         self.contacts.resize_with(self.lists.chunks.len(), ChunkContacts::default);
         let chunks = &mut self.lists.chunks;
         parallel::for_each_zipped(&mut self.contacts, chunks, |chunk, contacts, neighbours| {
@@ -103,7 +106,8 @@ impl BodyContacts {
         self.springs.clear();
         let mut finished = 0;
         for (chunk, forces) in forces.chunks(CHUNK).enumerate() {
-            let context = ContactContext { model, poses: &self.poses, springs, since_kick };
+            let poses = &self.poses;
+            let context = ContactContext { model, poses, springs, since_kick, is_solved: false };
             let (neighbours, contacts) = (&mut self.lists.chunks[chunk], &mut self.contacts[chunk]);
             contacts.take_buffers(&mut self.spare);
             detect::<true>(&context, chunk, contacts, neighbours);
@@ -121,6 +125,21 @@ impl BodyContacts {
                 finished += 1;
             }
         }
+    }
+
+    /// Finds the contacts within reach, and applies the impulses of the implicit solution of their law to `state`.
+    pub fn solve(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        solver: &mut Solver,
+        forces: &mut [BodyForces],
+    ) {
+        let since_kick = SinceKick::at_kick(model, state.time);
+        self.update_neighbour_lists(model, state, &since_kick);
+        self.evaluate::<false>(model, &state.pair_springs, since_kick);
+        let Self { poses, contacts, lists, .. } = self;
+        solver.solve(model, &Found { chunks: contacts, lists, poses }, state, forces);
     }
 
     /// Moves the friction springs after the latest evaluation into the state; to be called once per step.
@@ -182,7 +201,8 @@ impl BodyContacts {
         let since_kick = SinceKick::at_end_of_step(model, state.time);
         self.move_to(model, state, &since_kick);
         self.evaluate::<true>(model, &state.pair_springs, since_kick);
-        self.contacts.iter().map(ChunkContacts::elastic_energy).sum()
+        let is_solved = model.integrator == Integrator::Implicit;
+        self.contacts.iter().map(|contacts| contacts.elastic_energy(is_solved)).sum()
     }
 
     /// Calls `visit` with the pair, the normal and the depth (m) of each contact of a state.

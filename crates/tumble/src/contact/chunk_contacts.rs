@@ -166,8 +166,14 @@ impl ChunkContacts {
         (std::mem::take(&mut self.lanes), std::mem::take(&mut self.springs))
     }
 
-    /// Energy in the springs (J).
-    pub(super) fn elastic_energy(&self) -> f64 {
+    /// Energy in the springs (J); `is_solved` as in [`ContactContext`](super::context::ContactContext).
+    pub(super) fn elastic_energy(&self, is_solved: bool) -> f64 {
+        if is_solved {
+            let contacts = self.lanes[..self.lanes_used].iter().flat_map(|lanes| {
+                lanes.within_reach().map(|lane| lanes.elastic_energy_within_reach(lane))
+            });
+            return contacts.sum::<f64>() + self.released.iter().sum::<f64>();
+        }
         // the sum runs contact by contact: which lane a contact is in depends on the lists
         let contacts = self.lanes[..self.lanes_used]
             .iter()

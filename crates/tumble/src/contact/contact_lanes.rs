@@ -37,6 +37,12 @@ pub(super) struct ContactLanes {
     pub normal: Columns,
     /// Penetration depth δ (m).
     pub depth: [f64; LANES],
+    /// For the implicit solver: the gap, minus the depth, of contacts within reach; infinite in other lanes (m).
+    pub gap: [f64; LANES],
+    /// For the implicit solver: torque on the first body in addition to that of the force, over the force, and the index of the
+    /// spring of the latest kick, or [`NO_SPRING`].
+    pub couple: Columns,
+    pub spring: [u32; LANES],
     /// From the centre of mass of the first body to the point of contact (m).
     pub arm: Columns,
     /// From the centre of mass of the second body to the same point (m).
@@ -65,6 +71,9 @@ pub(super) struct ContactLanes {
     /// The stretch that the friction limit allows (m).
     pub held: Columns,
 }
+
+/// Marks a contact without a spring of the latest kick.
+pub(super) const NO_SPRING: u32 = u32::MAX;
 
 /// What the geometry of eight contacts is computed from.
 #[derive(Clone, Debug, Default)]
@@ -109,6 +118,9 @@ impl Default for ContactLanes {
             other_radius: zero,
             normal: vectors,
             depth: zero,
+            gap: zero,
+            couple: vectors,
+            spring: none,
             arm: vectors,
             other_arm: vectors,
             stiffness: zero,
@@ -162,6 +174,12 @@ impl ContactLanes {
         (0..self.count).filter(|&lane| self.depth[lane] > 0.0)
     }
 
+    /// The lanes within reach.
+    #[inline(always)]
+    pub fn within_reach(&self) -> impl Iterator<Item = usize> {
+        (0..self.count).filter(|&lane| self.gap[lane] < f64::INFINITY)
+    }
+
     /// Velocities of the bodies, as their poses have them; with `DRIFT` those in the middle of the flight since the latest kick.
     #[inline(always)]
     pub fn velocities<const DRIFT: bool>(&self, poses: &[BodyPose]) -> LaneVelocities {
@@ -190,6 +208,16 @@ impl ContactLanes {
             set(&mut velocity, lane, of_body(self.first[lane]) - of_body(self.second[lane]));
         }
         velocity
+    }
+
+    /// Energy in the springs of one contact of the implicit solver (J): its friction spring lasts from kick to kick, although the
+    /// bodies may be apart in between.
+    pub fn elastic_energy_within_reach(&self, lane: usize) -> f64 {
+        let (depth, stretch) = (self.depth[lane], vector(&self.stretch, lane));
+        let normal = self.stiffness[lane] * depth * depth;
+        let has_spring = self.friction[lane] > 0.0 && self.spring[lane] != NO_SPRING;
+        let spring = if has_spring { self.friction_spring[lane] } else { 0.0 };
+        0.5 * (normal + spring * stretch.length_squared())
     }
 
     /// Energy in the springs of one contact (J).

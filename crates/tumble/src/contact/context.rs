@@ -13,4 +13,6 @@ pub(super) struct ContactContext<'a> {
     pub springs: &'a [PairSpring],
     /// The flight since the latest kick.
     pub since_kick: SinceKick,
+    /// Whether the contacts are found for the implicit solver, within reach and without forces.
+    pub is_solved: bool,
 }

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::context::ContactContext;
-use super::pair::contact_law;
+use super::pair::{contact_law, contact_particles, wall_weight};
 use crate::parallel::CHUNK;
 use crate::state::pair_order;
 use crate::{BodyModel, ContactKind, Model, PairSpring};
@@ -18,6 +18,8 @@ pub(super) struct FrictionHistory<'a> {
     /// Energy (J) of the springs of contacts that have ended, by body of the chunk.
     pub released: Vec<f64>,
     first_body: usize,
+    /// The number of all springs up to the end of the chunk.
+    end: usize,
 }
 
 impl<'a> FrictionHistory<'a> {
@@ -26,8 +28,15 @@ impl<'a> FrictionHistory<'a> {
         let before = |end: usize| context.springs.partition_point(|s| (s.first as usize) < end);
         released.clear();
         released.resize(CHUNK, 0.0);
-        let old = &context.springs[before(first_body)..before(first_body + CHUNK)];
-        Self { model: context.model, old, released, first_body }
+        let end = before(first_body + CHUNK);
+        let old = &context.springs[before(first_body)..end];
+        Self { model: context.model, old, released, first_body, end }
+    }
+
+    /// The index of the spring that was taken last, among all springs.
+    #[inline(always)]
+    pub fn last_taken(&self) -> u32 {
+        (self.end - self.old.len()) as u32 - 1
     }
 
     /// The stretch that the spring of a contact had; springs that sort before it are released.
@@ -84,7 +93,9 @@ fn compare(model: &Model, a: &PairSpring, b: &PairSpring) -> Ordering {
 
 /// Slots of the particles of a spring.
 fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
-    let slot = |body: u32, index| model.bodies[body as usize].points().slot_of_index(index);
+    let slot = |body: u32, index| {
+        contact_particles(&model.bodies[body as usize], spring.kind).slot_of_index(index)
+    };
     match spring.kind {
         ContactKind::SphereSphere => {
             (slot(spring.first, spring.particle), slot(spring.second, spring.other))
@@ -100,7 +111,8 @@ fn slots(model: &Model, spring: &PairSpring) -> (u32, u32) {
 fn friction_spring(model: &Model, spring: &PairSpring) -> f64 {
     let first = &model.bodies[spring.first as usize];
     if spring.kind == ContactKind::SphereWall {
-        return first.contacts[spring.second as usize].friction_spring;
+        let weight = wall_weight(first, spring.particle);
+        return weight * first.contacts[spring.second as usize].friction_spring;
     }
     let second = &model.bodies[spring.second as usize];
     let weight = |body: &BodyModel| body.points().weight(spring.particle as usize);

@@ -39,11 +39,13 @@ mod pair_forces;
 mod patch_damping;
 pub(crate) mod pose;
 mod since_kick;
+mod solver;
 pub(crate) mod tunnelling;
 pub(crate) mod wall;
 
 pub(crate) use self::body_contacts::BodyContacts;
 pub(crate) use self::pair::{
-    can_touch, contact_kinds, contact_law, sphere_radius, tunnelling_limit,
+    can_touch, contact_kinds, contact_law, contact_particles, sphere_radius, tunnelling_limit,
 };
 pub(crate) use self::since_kick::{Kick, SinceKick};
+pub(crate) use self::solver::Solver;

@@ -15,7 +15,7 @@ use super::pair::{
 use super::pose::BodyPose;
 use crate::parallel::{self, CHUNK};
 use crate::state::PairOrder;
-use crate::{BodyModel, ContactKind, Model, Surface};
+use crate::{BodyModel, ContactKind, Integrator, Model};
 
 /// The skin of a body as a part of its feature size.
 const SKIN: f64 = 0.2;
@@ -52,7 +52,7 @@ pub(super) struct NeighbourLists {
 /// How far a body may move before the lists are rebuilt (m). It is at least the displacement in two steps, so that what
 /// one step could jump over is listed.
 fn skin(body: &BodyModel, pose: &BodyPose) -> f64 {
-    (SKIN * feature_size(body)).max(2.0 * pose.step_displacement)
+    (SKIN * feature_size(body)).max(2.0 * pose.step_displacement) + pose.reach
 }
 
 impl NeighbourLists {
@@ -130,23 +130,30 @@ impl ChunkNeighbours {
         self.mesh_cache.clear();
     }
 
-    /// Adds the spheres of a body near walls. Particles without spheres meet walls in [`wall`](super::wall).
+    /// Adds the spheres of a body near walls. Particles without spheres meet walls in [`wall`](super::wall), except in the implicit
+    /// solver.
     fn add_walls(&mut self, model: &Model, poses: &[BodyPose], first: u32) {
         let (body, pose) = (&model.bodies[first as usize], &poses[first as usize]);
-        let Surface::Spheres { radius } = body.surface else { return };
-        if !body.is_free() {
+        let is_listed = body.has_spheres() || model.integrator == Integrator::Implicit;
+        if !body.is_free() || !is_listed {
             return;
         }
+        let (radius, particles) = (sphere_radius(body), body.shape.particles());
         for (index, (wall, law)) in model.walls.iter().zip(&body.contacts).enumerate() {
             if wall.depth(pose.position) < -(body.extent + pose.skin) {
                 continue;
             }
             let start = self.points.len() as u32;
-            for slot in 0..body.shape.particles().len() as u32 {
-                if wall.depth(pose.particle_position(body, slot)) > -(radius + pose.skin) {
-                    self.points.push(ListedContact { particle: slot, other: 0, clear_until: 0.0 });
-                }
-            }
+            let [mut slots, other_slots] = std::mem::take(&mut self.slots);
+            slots.clear();
+            let is_near = |centre: DVec3, range: f64| {
+                wall.depth(pose.position + pose.rotation * centre) > -(range + pose.skin)
+            };
+            particles.collect_slots_where(|centre, range| is_near(centre, range + radius), &mut slots);
+            slots.retain(|&slot| is_near(particles.at(slot), radius));
+            let point = |&particle| ListedContact { particle, other: 0, clear_until: 0.0 };
+            self.points.extend(slots.iter().map(point));
+            self.slots = [slots, other_slots];
             self.add_pair(Pair {
                 first,
                 second: index as u32,

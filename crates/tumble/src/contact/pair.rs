@@ -1,7 +1,7 @@
 //! Pairs of bodies that may touch, and what is constant about their contacts.
 
 use crate::state::{PairOrder, pair_order};
-use crate::{BodyModel, ContactKind, ContactLaw, Surface};
+use crate::{BodyModel, ContactKind, ContactLaw, Particles, Surface};
 
 /// Two bodies, or a body and a wall, in a neighbour list.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +87,18 @@ pub(super) fn thickness(body: &BodyModel) -> f64 {
 /// Whether two bodies can have contacts of this kind.
 pub(crate) fn can_touch(first: &BodyModel, second: &BodyModel, kind: ContactKind) -> bool {
     (first.is_free() || second.is_free()) && contact_kinds(first, second).contains(&kind)
+}
+
+/// The points of a body that can have contacts of this kind: only its particles touch walls.
+#[inline(always)]
+pub(crate) fn contact_particles(body: &BodyModel, kind: ContactKind) -> &Particles {
+    if kind == ContactKind::SphereWall { body.shape.particles() } else { body.points() }
+}
+
+/// The weight of a particle in contact with a wall: that of its area; spheres have none.
+#[inline(always)]
+pub(super) fn wall_weight(body: &BodyModel, particle: u32) -> f64 {
+    if body.has_spheres() { 1.0 } else { body.shape.particles().weight(particle as usize) }
 }
 
 /// The kinds of contact that two bodies can have.

@@ -29,6 +29,9 @@ pub(crate) struct BodyPose {
     pub list_valid_until: f64,
     /// An upper bound on how far any point of the body moves in one step (m).
     pub step_displacement: f64,
+    /// Contacts are found up to a gap of the reaches of both bodies together: the implicit solver needs those that may close within
+    /// the step. Else 0 (m).
+    pub reach: f64,
 }
 
 /// Stands for a wall as the second body of a pair.
@@ -45,6 +48,7 @@ static WALL: BodyPose = BodyPose {
     skin: 0.0,
     list_valid_until: 0.0,
     step_displacement: 0.0,
+    reach: 0.0,
 };
 
 /// The pose of a body, or that of a wall where `index` is no body.
@@ -65,6 +69,8 @@ impl BodyPose {
         };
         let [drift_velocity, drift_angular_velocity] =
             mid_flight(model, &kinematics, state, since_kick);
+        let step_displacement =
+            model.dt * (length(state.velocity) + length(omega) * body.extent);
         Self {
             drift_velocity,
             drift_angular_velocity,
@@ -77,7 +83,12 @@ impl BodyPose {
             path: rounding_bound(body, state),
             skin: 0.0,
             list_valid_until: 0.0,
-            step_displacement: model.dt * (length(state.velocity) + length(omega) * body.extent),
+            step_displacement,
+            reach: if model.integrator == Integrator::Implicit {
+                step_displacement + model.dt * model.dt * length(model.gravity)
+            } else {
+                0.0
+            },
         }
     }
 
@@ -118,7 +129,7 @@ fn mid_flight(
 ) -> [DVec3; 2] {
     let Kinematics { velocity, angular_velocity, .. } = *kinematics;
     let half = 0.5 * since_kick.duration;
-    if model.integrator != Integrator::Splitting {
+    if !model.integrator.kicks() {
         return [velocity, angular_velocity];
     }
     if let Motion::Prescribed(prescribed) = &kinematics.body.motion {

@@ -31,7 +31,7 @@ impl SinceKick {
     pub fn at_kick(model: &Model, start: f64) -> Self {
         let (h, is_first) = (model.dt, start == 0.0);
         match model.integrator {
-            Integrator::Splitting => {
+            Integrator::Splitting | Integrator::Implicit => {
                 let duration = if is_first { 0.5 * h } else { h };
                 let time = start + 0.5 * h;
                 Self { time, duration, new_contact_limit: duration, is_first }
@@ -46,7 +46,7 @@ impl SinceKick {
     pub fn at_end_of_step(model: &Model, time: f64) -> Self {
         let (h, is_first) = (model.dt, time == 0.0);
         match model.integrator {
-            Integrator::Splitting => {
+            Integrator::Splitting | Integrator::Implicit => {
                 let duration = if is_first { 0.0 } else { 0.5 * h };
                 Self { time, duration, new_contact_limit: duration, is_first: false }
             }

@@ -41,6 +41,27 @@ pub fn around_body_contact(
     scratch.body_contacts.store_friction_springs(&mut state.pair_springs);
 }
 
+/// The same with an implicit solution of the contact law, in place of forces.
+pub fn around_implicit_contact(
+    model: &Model,
+    state: &mut State,
+    scratch: &mut Scratch,
+    before: impl Fn(&mut Batch) + Sync,
+    after: impl Fn(&mut Batch) + Sync,
+) {
+    for_each_batch(model, state, scratch, |batch| {
+        before(batch);
+        let Batch { model, time, first, bodies, poses, .. } = batch;
+        let since_kick = SinceKick::at_kick(model, *time);
+        gather::update_poses(model, *first, poses, bodies, &since_kick);
+    });
+    if model.has_body_contact {
+        let Scratch { body_contacts, solver, forces, .. } = scratch;
+        body_contacts.solve(model, state, solver, forces);
+    }
+    for_each_batch(model, state, scratch, after);
+}
+
 /// Neighbour lists, narrow phase and contact forces, for a kick over the time step.
 ///
 /// Under `splitting`, dashpots see the mean of the velocities before and after the kick: a first evaluation of all contacts, with

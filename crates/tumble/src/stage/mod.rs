@@ -16,7 +16,7 @@ mod mouse_spring;
 mod substep;
 mod wall_contact;
 
-pub use body_contact::around_body_contact;
+pub use body_contact::{around_body_contact, around_implicit_contact};
 pub use check::{check, report_failure};
 pub use drag::drag;
 pub use drift::{drift, drift_free_flight};

@@ -6,14 +6,14 @@ use glam::DVec3;
 use super::pair_poses::{PairPoses, PointGeometry};
 use crate::PairSpring;
 use crate::contact::chunk_contacts::{Candidate, ChunkContacts};
-use crate::contact::contact_lanes::ContactLanes;
+use crate::contact::contact_lanes::{ContactLanes, NO_SPRING};
 use crate::contact::context::ContactContext;
 use crate::contact::friction_history::FrictionHistory;
 use crate::contact::pair::{ListedContact, Pair};
 use crate::contact::pair_forces::{PairForces, PairLosses, PairWrench};
 use crate::contact::patch_damping::{NO_PATCH, PairPatch};
 use crate::contact::tunnelling::TunnellingRisk;
-use crate::lanes::LANES;
+use crate::lanes::{LANES, set};
 
 /// Fills lanes with points, and takes full lanes through geometry, friction and forces.
 pub(super) struct LaneFiller<'a> {
@@ -26,6 +26,8 @@ pub(super) struct LaneFiller<'a> {
     path: [f64; LANES],
     /// For each lane, how far the bodies may move relative to each other in a step (m).
     step_displacement: [f64; LANES],
+    /// For each lane, up to which gap it is a contact (m).
+    reach: [f64; LANES],
 }
 
 impl<'a> LaneFiller<'a> {
@@ -35,7 +37,8 @@ impl<'a> LaneFiller<'a> {
         history: FrictionHistory<'a>,
     ) -> Self {
         let zero = [0.0; LANES];
-        Self { context, contacts, history, count: 0, path: zero, step_displacement: zero }
+        let (path, step_displacement, reach) = (zero, zero, zero);
+        Self { context, contacts, history, count: 0, path, step_displacement, reach }
     }
 
     /// Starts a pair; returns its index in [`ChunkContacts::pairs`].
@@ -83,7 +86,7 @@ impl<'a> LaneFiller<'a> {
             lanes.push(ContactLanes::default());
         }
         let lanes = &mut lanes[*lanes_used];
-        self.path[lane] = poses.path;
+        (self.path[lane], self.reach[lane]) = (poses.path, poses.reach);
         // tunnelling through meshes is judged by their relative path, in `point_mesh`
         self.step_displacement[lane] =
             if pair.is_point_mesh() { 0.0 } else { poses.step_displacement };
@@ -94,7 +97,12 @@ impl<'a> LaneFiller<'a> {
             lanes.has_patch = false;
         }
         poses.write_law(pair, point, lane, lanes);
-        if geometry.couple != DVec3::ZERO {
+        if self.context.is_solved {
+            // over the force, k w δ
+            let scale = geometry.weight * geometry.contact_distance_or_depth;
+            let couple = if geometry.couple == DVec3::ZERO { DVec3::ZERO } else { geometry.couple / scale };
+            set(&mut lanes.couple, lane, couple);
+        } else if geometry.couple != DVec3::ZERO {
             let couple = geometry.couple * lanes.stiffness[lane];
             pairs[candidate.pair as usize].add_couple(couple);
         }
@@ -130,8 +138,12 @@ impl<'a> LaneFiller<'a> {
         let current = &mut lanes[*lanes_used];
         *lanes_used += 1;
         current.depth[count..].fill(0.0);
+        current.gap[count..].fill(f64::INFINITY);
         if current.has_friction {
             current.advance_friction(simd, input, poses, &since_kick);
+        }
+        if self.context.is_solved {
+            return;
         }
         if current.has_patch {
             current.add_to_patches(simd, forces, patches);
@@ -171,17 +183,30 @@ impl<'a> LaneFiller<'a> {
     /// Writes the gap of a lane back to the neighbour list, and finds the spring that its contact had.
     #[inline(always)]
     fn finish_lane(&mut self, lane: usize, pairs: &mut [Pair], points: &mut [ListedContact]) {
-        let ChunkContacts { lanes, lanes_used, pairs: forces, pair_index, input, .. } =
+        let ChunkContacts { lanes, lanes_used, pairs: forces, losses, pair_index, input, .. } =
             &mut *self.contacts;
         let lanes = &mut lanes[*lanes_used];
         let index = forces[lanes.pair[lane] as usize].list_index as usize;
         let (pair, point) = (&mut pairs[index], &mut points[lanes.point[lane] as usize]);
         let (path, step_displacement) = (self.path[lane], self.step_displacement[lane]);
         input.has_spring[lane] = 0.0;
+        if self.context.is_solved {
+            let gap = -lanes.depth[lane];
+            lanes.gap[lane] = if gap < self.reach[lane] { gap } else { f64::INFINITY };
+            lanes.spring[lane] = NO_SPRING;
+            if gap < self.reach[lane] && let Some(stretch) = self.history.take(&lanes.spring_key(lane, pair)) {
+                lanes.set_old_stretch(lane, stretch);
+                lanes.spring[lane] = self.history.last_taken();
+                input.has_spring[lane] = 1.0;
+            }
+        }
         if lanes.depth[lane] > 0.0 {
             point.clear_until = 0.0;
             pair_index[index] = lanes.pair[lane];
-            if lanes.friction[lane] > 0.0 {
+            if self.context.is_solved && let Some(losses) = losses.get_mut(lanes.pair[lane] as usize) {
+                losses.max_depth = losses.max_depth.max(lanes.depth[lane]);
+            }
+            if lanes.friction[lane] > 0.0 && !self.context.is_solved {
                 let key: PairSpring = lanes.spring_key(lane, pair);
                 if let Some(stretch) = self.history.take(&key) {
                     lanes.set_old_stretch(lane, stretch);

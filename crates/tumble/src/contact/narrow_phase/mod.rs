@@ -43,7 +43,7 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
     for index in 0..pairs.len() {
         let pair = &pairs[index];
         let poses = PairPoses::new(context, pair);
-        if poses.path < pair.clear_until && poses.step_displacement <= pair.tunnelling_limit {
+        if poses.path + poses.reach < pair.clear_until && poses.step_displacement <= pair.tunnelling_limit {
             continue;
         }
         if pair.is_point_mesh() {
@@ -61,7 +61,9 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
     }
     examine_candidates::<S, PREDICT>(simd, &mut filler, pairs, points);
     filler.flush::<S, PREDICT>(simd, pairs, points);
-    filler.evaluate::<S, PREDICT>(simd, pairs, true);
+    if !context.is_solved {
+        filler.evaluate::<S, PREDICT>(simd, pairs, true);
+    }
     filler.history.release_all();
     let released = filler.history.released;
     contacts.released = released;
@@ -85,7 +87,7 @@ fn add_candidates(
     candidates.resize(count + range.len(), Candidate::default());
     let mut clear_until = f64::INFINITY;
     for (index, point) in (pair.start..).zip(&points[range]) {
-        let is_clear = poses.path < point.clear_until
+        let is_clear = poses.path + poses.reach < point.clear_until
             && !poses.may_tunnel(pair, poses.path, point.clear_until);
         candidates[count] = Candidate { pair: contact_pair, point: index };
         count += usize::from(!is_clear);

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::contact::contact_lanes::{ContactLanes, LaneInput};
 use crate::contact::context::ContactContext;
-use crate::contact::pair::{ListedContact, Pair};
+use crate::contact::pair::{ListedContact, Pair, contact_particles, wall_weight};
 use crate::contact::pose::{BodyPose, pose_or_wall};
 use crate::lanes::set;
 use crate::{ContactKind, Model, Particles};
@@ -33,6 +33,8 @@ pub(super) struct PairPoses<'a> {
     pub path: f64,
     /// An upper bound on how far the bodies move relative to each other in a step (m).
     pub step_displacement: f64,
+    /// Contacts are found up to this gap (m).
+    pub reach: f64,
 }
 
 impl<'a> PairPoses<'a> {
@@ -42,7 +44,8 @@ impl<'a> PairPoses<'a> {
         let second = pose_or_wall(context.poses, pair.second_body());
         let path = first.path + second.path;
         let step_displacement = first.step_displacement + second.step_displacement;
-        let poses = Self { model: context.model, first, second, path, step_displacement };
+        let reach = first.reach + second.reach;
+        let poses = Self { model: context.model, first, second, path, step_displacement, reach };
         if step_displacement <= pair.tunnelling_limit {
             poses
         } else {
@@ -91,8 +94,10 @@ impl<'a> PairPoses<'a> {
         lane: usize,
         lanes: &mut ContactLanes,
     ) {
-        let index = |body: u32, slot| self.particles(body).index_of_slot(slot);
         let Pair { first, second, kind, law, .. } = pair;
+        let index = |body: u32, slot| {
+            contact_particles(&self.model.bodies[body as usize], *kind).index_of_slot(slot)
+        };
         let (particle, other) = match kind {
             ContactKind::SphereSphere => {
                 (index(*first, point.particle), index(*second, point.other))
@@ -103,7 +108,10 @@ impl<'a> PairPoses<'a> {
         (lanes.particle[lane], lanes.other[lane]) = (particle, other);
         (lanes.first[lane], lanes.second[lane]) = (*first, pair.second_body());
         let weight = match kind {
-            ContactKind::SphereSphere | ContactKind::SphereWall => 1.0,
+            ContactKind::SphereSphere => 1.0,
+            ContactKind::SphereWall => {
+                wall_weight(&self.model.bodies[*first as usize], particle)
+            }
             ContactKind::PointMesh => self.particles(*first).weight(particle as usize),
             ContactKind::MeshPoint => self.particles(*second).weight(particle as usize),
         };

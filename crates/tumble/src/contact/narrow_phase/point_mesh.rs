@@ -36,23 +36,24 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
     let (particles, mesh) = particles_and_mesh(poses, pair);
     let relative_pose = RelativePose::new(particles.0, particles.1, mesh.1);
     let (path, until) = mesh_cache.advance(pair.cache, &relative_pose, poses.path);
-    if path < until && !is_fast {
+    if path + poses.reach < until && !is_fast {
         return poses.path + (until - path);
     }
     let contact_pair = filler.begin_pair::<PREDICT>(index, pair);
     let margin =
         if is_fast { pair.search_margin.max(poses.step_displacement) } else { pair.search_margin };
+    let reach = poses.reach;
     let mut query =
-        MeshQuery { pair, particles, mesh, mesh_cache, needs_distance: is_fast, margin };
+        MeshQuery { pair, particles, mesh, mesh_cache, needs_distance: is_fast, margin, reach };
     let mut clear_until = f64::INFINITY;
     for (block, start) in (pair.start..pair.end).step_by(BLOCK).enumerate() {
         let mut block_clear_until = *query.mesh_cache.block_clear_until(pair.cache, block);
-        if path >= block_clear_until || is_fast {
+        if path + reach >= block_clear_until || is_fast {
             block_clear_until = f64::INFINITY;
             for point_index in start..pair.end.min(start + BLOCK as u32) {
                 let point = &mut points[point_index as usize];
                 let mut is_full = false;
-                if path >= point.clear_until || poses.may_tunnel(pair, path, point.clear_until) {
+                if path + reach >= point.clear_until || poses.may_tunnel(pair, path, point.clear_until) {
                     match query.geometry(point) {
                         Ok(geometry) => {
                             point.clear_until = 0.0;
@@ -99,10 +100,12 @@ struct MeshQuery<'a> {
     needs_distance: bool,
     /// How far beyond the contact distance the mesh is searched (m).
     margin: f64,
+    /// Up to which gap contacts are found (m).
+    reach: f64,
 }
 
 impl MeshQuery<'_> {
-    /// The geometry of a point that touches the mesh; otherwise a lower bound on its gap (m).
+    /// The geometry of a point that touches the mesh, or is within reach of it; otherwise a lower bound on its gap (m).
     #[inline(always)]
     fn geometry(&mut self, point: &mut ListedContact) -> Result<PointGeometry, f64> {
         let (position, contact) = self.contact(point)?;
@@ -142,10 +145,11 @@ impl MeshQuery<'_> {
         let nearest = signed_distance.query_cached(local, patch, contact_distance + self.margin);
         let Some(nearest) = nearest else { return Err(self.margin) };
         let depth = contact_distance - nearest.distance;
-        if depth <= 0.0 {
+        if depth <= -self.reach {
             return Err(-depth);
         }
-        let Some(points) = points else {
+        let is_apart = depth <= 0.0 && half_length == 0.0;
+        let Some(points) = points.filter(|_| !is_apart) else {
             return Ok((position, PointContact::plain(nearest.gradient, depth)));
         };
         let surface = SurfacePoint::new(points, body.points().index_of_slot(point.particle));
@@ -167,7 +171,7 @@ impl MeshQuery<'_> {
     ) -> Option<f64> {
         if let Some(patch) = self.mesh_cache.patch(point) {
             let gap = patch.lower_bound(local) - contact_distance;
-            if gap > 0.0 {
+            if gap > self.reach {
                 return Some(gap);
             }
             // a particle that touched in the step before most likely still does
@@ -176,6 +180,6 @@ impl MeshQuery<'_> {
             }
         }
         let gap = signed_distance.lower_bound(local) - contact_distance;
-        (gap > 0.0).then_some(gap)
+        (gap > self.reach).then_some(gap)
     }
 }

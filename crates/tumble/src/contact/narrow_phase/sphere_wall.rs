@@ -1,4 +1,4 @@
-//! Spheres of a body and a wall.
+//! Spheres or particles of a body and a wall.
 
 use glam::DVec3;
 
@@ -9,7 +9,8 @@ use crate::contact::pair::{ListedContact, Pair};
 #[inline(always)]
 pub(super) fn geometry(poses: &PairPoses, pair: &Pair, point: &ListedContact) -> PointGeometry {
     let PairPoses { model, first, .. } = poses;
-    let position = first.particle_position(&model.bodies[pair.first as usize], point.particle);
+    let particles = model.bodies[pair.first as usize].shape.particles();
+    let position = first.position + first.rotation * particles.at(point.particle);
     let wall = &model.walls[pair.second as usize];
     PointGeometry {
         position,

@@ -1,0 +1,184 @@
+//! The iterations: projected Gauss–Seidel, colour by colour, forwards and backwards in turn.
+
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+
+use super::bodies::{LaneInertia, LaneMotion, SolverBody};
+use super::law::relative_velocity;
+use super::rows::{Pack, Row, Rows};
+use crate::SolverSettings;
+use crate::lanes::{Vec3x8, positive, sum};
+
+/// How the iterations ended.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outcome {
+    pub iterations: u32,
+    pub has_converged: bool,
+}
+
+/// Squares of the changes of the impulses in an iteration, and of the impulses (N²·s²).
+#[derive(Clone, Copy, Debug, Default)]
+struct Change {
+    change: f64,
+    total: f64,
+}
+
+impl Change {
+    fn is_below(self, tolerance: f64) -> bool {
+        self.change <= tolerance * tolerance * self.total
+    }
+}
+
+/// Applies the impulses that the rows begin with.
+pub(super) fn apply(rows: &Rows, bodies: &mut [SolverBody]) {
+    for pack in &rows.packs {
+        let rows = &rows.rows[pack.start as usize..pack.end as usize];
+        dispatch!(Level::new(), simd => simd.vectorize(
+            #[inline(always)]
+            || apply_pack(simd, pack, rows, bodies)
+        ));
+    }
+}
+
+/// Iterates until the impulses change by less than the tolerance.
+pub(super) fn iterate(
+    rows: &mut Rows,
+    bodies: &mut [SolverBody],
+    settings: SolverSettings,
+) -> Outcome {
+    for iteration in 0..settings.max_iterations {
+        let change = sweep(rows, bodies, iteration % 2 == 1);
+        if change.is_below(settings.tolerance) {
+            return Outcome { iterations: iteration + 1, has_converged: true };
+        }
+    }
+    Outcome { iterations: settings.max_iterations, has_converged: false }
+}
+
+/// Visits each contact once.
+fn sweep(rows: &mut Rows, bodies: &mut [SolverBody], is_backward: bool) -> Change {
+    let mut all = Change::default();
+    let Rows { packs, rows, .. } = rows;
+    let mut visit = |pack: &Pack| {
+        let rows = &mut rows[pack.start as usize..pack.end as usize];
+        let Change { change, total } = dispatch!(Level::new(), simd => simd.vectorize(
+            #[inline(always)]
+            || visit_pack(simd, pack, rows, bodies, is_backward)
+        ));
+        all.change += change;
+        all.total += total;
+    };
+    if is_backward {
+        packs.iter().rev().for_each(&mut visit);
+    } else {
+        packs.iter().for_each(&mut visit);
+    }
+    all
+}
+
+#[inline(always)]
+fn apply_pack<S: Simd>(simd: S, pack: &Pack, rows: &[Row], bodies: &mut [SolverBody]) {
+    let mut pair = PackBodies::gather(simd, pack, bodies);
+    for row in rows {
+        let normal = f64x8::simd_from(simd, row.impulse);
+        pair.push(simd, row, normal, Vec3x8::load(simd, &row.tangential_impulse));
+    }
+    pair.scatter(pack, bodies);
+}
+
+#[inline(always)]
+fn visit_pack<S: Simd>(
+    simd: S,
+    pack: &Pack,
+    rows: &mut [Row],
+    bodies: &mut [SolverBody],
+    is_backward: bool,
+) -> Change {
+    let mut pair = PackBodies::gather(simd, pack, bodies);
+    let zero = f64x8::splat(simd, 0.0);
+    let (mut change, mut total) = (zero, zero);
+    let mut visit = |row: &mut Row| {
+        let [normal_change, square, impulse] = pair.visit(simd, row);
+        change = change + normal_change * normal_change + square;
+        total = total + impulse * impulse;
+    };
+    if is_backward {
+        rows.iter_mut().rev().for_each(&mut visit);
+    } else {
+        rows.iter_mut().for_each(&mut visit);
+    }
+    pair.scatter(pack, bodies);
+    Change { change: sum(change), total: sum(total) }
+}
+
+/// The bodies of a pack.
+struct PackBodies<S: Simd> {
+    inertia: [LaneInertia<S>; 2],
+    motion: [LaneMotion<S>; 2],
+}
+
+impl<S: Simd> PackBodies<S> {
+    #[inline(always)]
+    fn gather(simd: S, pack: &Pack, bodies: &[SolverBody]) -> Self {
+        Self {
+            inertia: [
+                LaneInertia::load(simd, &pack.inertia[0]),
+                LaneInertia::load(simd, &pack.inertia[1]),
+            ],
+            motion: [
+                LaneMotion::gather(simd, bodies, &pack.first),
+                LaneMotion::gather(simd, bodies, &pack.second),
+            ],
+        }
+    }
+
+    #[inline(always)]
+    fn scatter(&self, pack: &Pack, bodies: &mut [SolverBody]) {
+        self.motion[0].scatter(bodies, &pack.first);
+        self.motion[1].scatter(bodies, &pack.second);
+    }
+
+    /// Applies an impulse to the first bodies and the opposite one to the second.
+    #[inline(always)]
+    fn push(&mut self, simd: S, row: &Row, normal: f64x8<S>, tangential: Vec3x8<S>) {
+        let impulse = Vec3x8::load(simd, &row.normal) * normal + tangential;
+        let zero = f64x8::splat(simd, 0.0);
+        for (index, sign) in [(0, normal), (1, zero - normal)] {
+            let along = if index == 0 { impulse } else { impulse * f64x8::splat(simd, -1.0) };
+            let tangential = if index == 0 { tangential } else { tangential * f64x8::splat(simd, -1.0) };
+            let torque = Vec3x8::load(simd, &row.levers[index]) * sign
+                + Vec3x8::load(simd, &row.arms[index]).cross(tangential);
+            self.motion[index].add(&self.inertia[index], along, torque);
+        }
+    }
+
+    /// Gives the contacts the impulses that the law asks for; returns the change of the normal impulses, the square of the change of the
+    /// tangential ones, and the normal impulses.
+    #[inline(always)]
+    fn visit(&mut self, simd: S, row: &mut Row) -> [f64x8<S>; 3] {
+        let load = |values| f64x8::simd_from(simd, values);
+        let (u, slip) = relative_velocity(simd, row, &self.motion);
+        let old = load(row.impulse);
+        let (slope, mobility) = (load(row.slope), load(row.normal_mobility));
+        let by_law =
+            (load(row.offset) - slope * u + slope * mobility * old) * load(row.normal_factor);
+        let by_rebound = old + (load(row.rebound) - u) / mobility;
+        let normal = positive(simd, by_law.simd_gt(by_rebound).select(by_law, by_rebound));
+        row.impulse = normal.into();
+
+        let old_tangential = Vec3x8::load(simd, &row.tangential_impulse);
+        let (slope, mobility) = (load(row.tangential_slope), load(row.tangential_mobility));
+        let wanted = (Vec3x8::load(simd, &row.tangential_offset) - slip * slope
+            + old_tangential * (slope * mobility))
+            * load(row.tangential_factor);
+        let limit = load(row.friction) * normal;
+        let size = wanted.dot(wanted);
+        let slips = size.simd_gt(limit * limit);
+        let factor = slips.select(limit / size.sqrt(), f64x8::splat(simd, 1.0));
+        let tangential = wanted * factor;
+        row.tangential_impulse = tangential.store();
+
+        let (change, tangential_change) = (normal - old, tangential - old_tangential);
+        self.push(simd, row, change, tangential_change);
+        [change, tangential_change.dot(tangential_change), normal]
+    }
+}
