@@ -83,9 +83,11 @@ pub(super) struct LaneMotion<S: Simd> {
 impl<S: Simd> LaneInertia<S> {
     #[inline(always)]
     pub fn load(simd: S, columns: &InertiaColumns) -> Self {
-        let [inverse_mass, inverse_inertia @ ..] =
-            columns.map(|column| f64x8::simd_from(simd, column));
-        Self { inverse_mass, inverse_inertia }
+        let load = |index: usize| f64x8::simd_from(simd, columns[index]);
+        Self {
+            inverse_mass: load(0),
+            inverse_inertia: [load(1), load(2), load(3), load(4), load(5), load(6)],
+        }
     }
 
     /// I⁻¹ τ.
@@ -131,6 +133,13 @@ impl<S: Simd> LaneMotion<S> {
             body.velocity = vector(&velocity, lane);
             body.angular_velocity = vector(&angular_velocity, lane);
         }
+    }
+
+    /// Adds the opposite of an impulse (N·s) and its torque impulse (N·m·s).
+    #[inline(always)]
+    pub fn subtract(&mut self, inertia: &LaneInertia<S>, impulse: Vec3x8<S>, torque: Vec3x8<S>) {
+        self.velocity = self.velocity - impulse * inertia.inverse_mass;
+        self.angular_velocity = self.angular_velocity - inertia.turned(torque);
     }
 
     /// Adds an impulse (N·s) and its torque impulse (N·m·s).

@@ -30,12 +30,16 @@ impl Change {
 
 /// Applies the impulses that the rows begin with.
 pub(super) fn apply(rows: &Rows, bodies: &mut [SolverBody]) {
+    dispatch!(Level::new(), simd => simd.vectorize(
+        #[inline(always)]
+        || apply_packs(simd, rows, bodies)
+    ));
+}
+
+#[inline(always)]
+fn apply_packs<S: Simd>(simd: S, rows: &Rows, bodies: &mut [SolverBody]) {
     for pack in &rows.packs {
-        let rows = &rows.rows[pack.start as usize..pack.end as usize];
-        dispatch!(Level::new(), simd => simd.vectorize(
-            #[inline(always)]
-            || apply_pack(simd, pack, rows, bodies)
-        ));
+        apply_pack(simd, pack, &rows.rows[pack.start as usize..pack.end as usize], bodies);
     }
 }
 
@@ -56,21 +60,33 @@ pub(super) fn iterate(
 
 /// Visits each contact once.
 fn sweep(rows: &mut Rows, bodies: &mut [SolverBody], is_backward: bool) -> Change {
+    dispatch!(Level::new(), simd => simd.vectorize(
+        #[inline(always)]
+        || visit_packs(simd, rows, bodies, is_backward)
+    ))
+}
+
+/// The place of the `number`-th of `count` in either direction.
+#[inline(always)]
+fn place(number: usize, count: usize, is_backward: bool) -> usize {
+    if is_backward { count - 1 - number } else { number }
+}
+
+#[inline(always)]
+fn visit_packs<S: Simd>(
+    simd: S,
+    rows: &mut Rows,
+    bodies: &mut [SolverBody],
+    is_backward: bool,
+) -> Change {
     let mut all = Change::default();
     let Rows { packs, rows, .. } = rows;
-    let mut visit = |pack: &Pack| {
+    for number in 0..packs.len() {
+        let pack = &packs[place(number, packs.len(), is_backward)];
         let rows = &mut rows[pack.start as usize..pack.end as usize];
-        let Change { change, total } = dispatch!(Level::new(), simd => simd.vectorize(
-            #[inline(always)]
-            || visit_pack(simd, pack, rows, bodies, is_backward)
-        ));
+        let Change { change, total } = visit_pack(simd, pack, rows, bodies, is_backward);
         all.change += change;
         all.total += total;
-    };
-    if is_backward {
-        packs.iter().rev().for_each(&mut visit);
-    } else {
-        packs.iter().for_each(&mut visit);
     }
     all
 }
@@ -96,15 +112,12 @@ fn visit_pack<S: Simd>(
     let mut pair = PackBodies::gather(simd, pack, bodies);
     let zero = f64x8::splat(simd, 0.0);
     let (mut change, mut total) = (zero, zero);
-    let mut visit = |row: &mut Row| {
+    let count = rows.len();
+    for number in 0..count {
+        let row = &mut rows[place(number, count, is_backward)];
         let [normal_change, square, impulse] = pair.visit(simd, row);
         change = change + normal_change * normal_change + square;
         total = total + impulse * impulse;
-    };
-    if is_backward {
-        rows.iter_mut().rev().for_each(&mut visit);
-    } else {
-        rows.iter_mut().for_each(&mut visit);
     }
     pair.scatter(pack, bodies);
     Change { change: sum(change), total: sum(total) }
@@ -141,14 +154,12 @@ impl<S: Simd> PackBodies<S> {
     #[inline(always)]
     fn push(&mut self, simd: S, row: &Row, normal: f64x8<S>, tangential: Vec3x8<S>) {
         let impulse = Vec3x8::load(simd, &row.normal) * normal + tangential;
-        let zero = f64x8::splat(simd, 0.0);
-        for (index, sign) in [(0, normal), (1, zero - normal)] {
-            let along = if index == 0 { impulse } else { impulse * f64x8::splat(simd, -1.0) };
-            let tangential = if index == 0 { tangential } else { tangential * f64x8::splat(simd, -1.0) };
-            let torque = Vec3x8::load(simd, &row.levers[index]) * sign
-                + Vec3x8::load(simd, &row.arms[index]).cross(tangential);
-            self.motion[index].add(&self.inertia[index], along, torque);
-        }
+        let torque = Vec3x8::load(simd, &row.levers[0]) * normal
+            + Vec3x8::load(simd, &row.arms[0]).cross(tangential);
+        self.motion[0].add(&self.inertia[0], impulse, torque);
+        let torque = Vec3x8::load(simd, &row.levers[1]) * normal
+            + Vec3x8::load(simd, &row.arms[1]).cross(tangential);
+        self.motion[1].subtract(&self.inertia[1], impulse, torque);
     }
 
     /// Gives the contacts the impulses that the law asks for; returns the change of the normal impulses, the square of the change of the

@@ -54,9 +54,12 @@ pub(super) fn prepare<S: Simd>(
     bodies: &[SolverBody],
     step: Step,
 ) {
-    let inertia = pack.inertia.map(|columns| LaneInertia::load(simd, &columns));
-    let motion =
-        [&pack.first, &pack.second].map(|indices| LaneMotion::gather(simd, bodies, indices));
+    let inertia =
+        [LaneInertia::load(simd, &pack.inertia[0]), LaneInertia::load(simd, &pack.inertia[1])];
+    let motion = [
+        LaneMotion::gather(simd, bodies, &pack.first),
+        LaneMotion::gather(simd, bodies, &pack.second),
+    ];
     for (row, law) in rows.iter().zip(&mut *laws) {
         velocities_before(simd, row, law, &motion);
     }
@@ -109,9 +112,10 @@ pub(super) fn relative_velocity<S: Simd>(
     motion: &[LaneMotion<S>; 2],
 ) -> (f64x8<S>, Vec3x8<S>) {
     let n = Vec3x8::load(simd, &row.normal);
-    let [arm, other_arm] = [&row.arms[0], &row.arms[1]].map(|arm| Vec3x8::load(simd, arm));
-    let [lever, other_lever] =
-        [&row.levers[0], &row.levers[1]].map(|lever| Vec3x8::load(simd, lever));
+    let arm = Vec3x8::load(simd, &row.arms[0]);
+    let other_arm = Vec3x8::load(simd, &row.arms[1]);
+    let lever = Vec3x8::load(simd, &row.levers[0]);
+    let other_lever = Vec3x8::load(simd, &row.levers[1]);
     let [first, second] = motion;
     let between = first.velocity - second.velocity;
     let normal = between.dot(n) + first.angular_velocity.dot(lever)
@@ -241,11 +245,10 @@ impl<S: Simd> LaneConstants<S> {
         let (stretch, sliding) =
             (Vec3x8::load(simd, &law.stretch), Vec3x8::load(simd, &law.sliding));
         let surface = Vec3x8::load(simd, &law.surface_velocity) * tangential.slope;
-        let constant = |x, u, a| tangential.constant(x, u, a);
         let offset = Vec3x8 {
-            x: constant(stretch.x, sliding.x, across.x),
-            y: constant(stretch.y, sliding.y, across.y),
-            z: constant(stretch.z, sliding.z, across.z),
+            x: tangential.constant(stretch.x, sliding.x, across.x),
+            y: tangential.constant(stretch.y, sliding.y, across.y),
+            z: tangential.constant(stretch.z, sliding.z, across.z),
         };
         let mobility = self.tangential_mobility(simd, row, n);
         row.tangential_slope = tangential.slope.into();
@@ -273,7 +276,8 @@ impl<S: Simd> LaneConstants<S> {
     #[inline(always)]
     fn normal_mobility(&self, simd: S, row: &Row) -> f64x8<S> {
         let [first, second] = &self.inertia;
-        let [lever, other] = [&row.levers[0], &row.levers[1]].map(|l| Vec3x8::load(simd, l));
+        let lever = Vec3x8::load(simd, &row.levers[0]);
+        let other = Vec3x8::load(simd, &row.levers[1]);
         or_one(simd, first.mobility(lever) + second.mobility(other))
     }
 
@@ -356,6 +360,37 @@ impl<S: Simd> Weights<S> {
     ) -> f64x8<S> {
         gap + h * (self.after * after - self.before * before)
             + self.half * acceleration * h * h * (self.after + self.before)
+    }
+
+    /// [`Self::gap`] of a vector.
+    #[inline(always)]
+    pub fn stretch(
+        &self,
+        h: f64x8<S>,
+        stretch: Vec3x8<S>,
+        (before, after): (Vec3x8<S>, Vec3x8<S>),
+        acceleration: Vec3x8<S>,
+    ) -> Vec3x8<S> {
+        Vec3x8 {
+            x: self.gap(h, stretch.x, (before.x, after.x), acceleration.x),
+            y: self.gap(h, stretch.y, (before.y, after.y), acceleration.y),
+            z: self.gap(h, stretch.z, (before.z, after.z), acceleration.z),
+        }
+    }
+
+    /// [`Self::velocity`] of a vector.
+    #[inline(always)]
+    pub fn sliding(
+        &self,
+        h: f64x8<S>,
+        (before, after): (Vec3x8<S>, Vec3x8<S>),
+        acceleration: Vec3x8<S>,
+    ) -> Vec3x8<S> {
+        Vec3x8 {
+            x: self.velocity(h, (before.x, after.x), acceleration.x),
+            y: self.velocity(h, (before.y, after.y), acceleration.y),
+            z: self.velocity(h, (before.z, after.z), acceleration.z),
+        }
     }
 
     /// The velocity that the dashpot sees.

@@ -30,8 +30,10 @@ pub(super) fn account<S: Simd>(
     bodies: &[SolverBody],
     step: Step,
 ) -> Account {
-    let motion =
-        [&pack.first, &pack.second].map(|indices| LaneMotion::gather(simd, bodies, indices));
+    let motion = [
+        LaneMotion::gather(simd, bodies, &pack.first),
+        LaneMotion::gather(simd, bodies, &pack.second),
+    ];
     let zero = f64x8::splat(simd, 0.0);
     let zeros = Vec3x8::splat(simd, DVec3::ZERO);
     let acceleration = acceleration(simd, pack, bodies);
@@ -40,20 +42,19 @@ pub(super) fn account<S: Simd>(
     for (row, law) in rows.iter().zip(laws) {
         let (normal, tangential) = sums.add(simd, row, law, &motion, acceleration, step);
         impulse += Vec3x8::load(simd, &row.normal) * normal + tangential;
-        for (index, torque) in torques.iter_mut().enumerate() {
-            *torque += Vec3x8::load(simd, &row.levers[index]) * normal
-                + Vec3x8::load(simd, &row.arms[index]).cross(tangential);
-        }
+        torques[0] += Vec3x8::load(simd, &row.levers[0]) * normal
+            + Vec3x8::load(simd, &row.arms[0]).cross(tangential);
+        torques[1] += Vec3x8::load(simd, &row.levers[1]) * normal
+            + Vec3x8::load(simd, &row.arms[1]).cross(tangential);
     }
     // what bodies with prescribed motion push with
     let is_prescribed = |index: usize| {
         LaneInertia::load(simd, &pack.inertia[index]).inverse_mass.simd_eq(zero)
     };
-    let power = |index: usize| {
-        let motion = &motion[index];
-        impulse.dot(motion.velocity) + torques[index].dot(motion.angular_velocity)
-    };
-    let work = is_prescribed(1).select(power(1), zero) - is_prescribed(0).select(power(0), zero);
+    let [first, second] = &motion;
+    let power = impulse.dot(first.velocity) + torques[0].dot(first.angular_velocity);
+    let other_power = impulse.dot(second.velocity) + torques[1].dot(second.angular_velocity);
+    let work = is_prescribed(1).select(other_power, zero) - is_prescribed(0).select(power, zero);
     let losses = RunTotals {
         dashpot: sum(sums.dashpot),
         slip: sum(sums.slip),
@@ -183,7 +184,9 @@ impl<S: Simd> Contact<S> {
         let (impulse, gap, before) = (load(&row.impulse), load(&law.gap), load(&law.approach));
         let work = self.zero - impulse * (before + after) * self.half;
         let ends = self.ends([gap, gap], [before, after], acceleration);
-        let [start, end] = ends.map(|gap| positive(simd, self.zero - gap));
+        let [start, end] = ends;
+        let start = positive(simd, self.zero - start);
+        let end = positive(simd, self.zero - end);
         let stored = load(&law.stiffness) * self.half * (end * end - start * start);
         let velocity = self.weights.velocity(self.h, (before, after), acceleration);
         let by_law = self.h * load(&law.damping) * velocity * velocity;
@@ -211,12 +214,7 @@ impl<S: Simd> Contact<S> {
         let k = load(&law.friction_spring);
         let (impulse, stretch) =
             (Vec3x8::load(simd, &row.tangential_impulse), Vec3x8::load(simd, &law.stretch));
-        let mean = |x, u, v, a| self.weights.gap(self.h, x, (u, v), a);
-        let mean = Vec3x8 {
-            x: mean(stretch.x, before.x, after.x, acceleration.x),
-            y: mean(stretch.y, before.y, after.y, acceleration.y),
-            z: mean(stretch.z, before.z, after.z, acceleration.z),
-        };
+        let mean = self.weights.stretch(self.h, stretch, (before, after), acceleration);
         // the spring is held at the limit of its own force, and the dashpot takes what remains of the impulse
         let limit = load(&row.friction) * load(&row.impulse) / self.h;
         let tension = k * mean.dot(mean).sqrt();
@@ -229,10 +227,9 @@ impl<S: Simd> Contact<S> {
         law.stretch = held.store();
 
         let work = self.zero - impulse.dot(before + after) * self.half;
-        let ends = |x: f64x8<S>, y: f64x8<S>, u, v, a| self.ends([x, y], [u, v], a);
-        let [x0, x1] = ends(stretch.x, held.x, before.x, after.x, acceleration.x);
-        let [y0, y1] = ends(stretch.y, held.y, before.y, after.y, acceleration.y);
-        let [z0, z1] = ends(stretch.z, held.z, before.z, after.z, acceleration.z);
+        let [x0, x1] = self.ends([stretch.x, held.x], [before.x, after.x], acceleration.x);
+        let [y0, y1] = self.ends([stretch.y, held.y], [before.y, after.y], acceleration.y);
+        let [z0, z1] = self.ends([stretch.z, held.z], [before.z, after.z], acceleration.z);
         let pushes = load(&row.impulse).simd_gt(self.zero);
         let had_spring = load(&law.had_spring).simd_gt(self.zero);
         let before_kick = k * self.half * (x0 * x0 + y0 * y0 + z0 * z0);
@@ -241,12 +238,7 @@ impl<S: Simd> Contact<S> {
         let keeps = load(&law.keeps_spring).simd_gt(self.zero);
         let after_kick = k * self.half * (x1 * x1 + y1 * y1 + z1 * z1);
         let stored = keeps.select(after_kick, self.zero) - before_kick;
-        let u = |u, v, a| self.weights.velocity(self.h, (u, v), a);
-        let u = Vec3x8 {
-            x: u(before.x, after.x, acceleration.x),
-            y: u(before.y, after.y, acceleration.y),
-            z: u(before.z, after.z, acceleration.z),
-        };
+        let u = self.weights.sliding(self.h, (before, after), acceleration);
         let by_dashpot = impulse - spring * self.h;
         let is_damped = load(&law.friction_damping).simd_gt(self.zero) & pushes;
         let dashpot = positive(simd, self.zero - by_dashpot.dot(u));

@@ -79,15 +79,11 @@ impl Solver {
     }
 
     fn prepare(&mut self, step: Step) {
-        let Rows { packs, rows, laws, .. } = &mut self.rows;
-        for pack in packs {
-            let range = pack.start as usize..pack.end as usize;
-            let rows = (&mut rows[range.clone()], &mut laws[range]);
-            dispatch!(Level::new(), simd => simd.vectorize(
-                #[inline(always)]
-                || prepare(simd, pack, rows, &self.bodies, step)
-            ));
-        }
+        let Self { rows, bodies, .. } = self;
+        dispatch!(Level::new(), simd => simd.vectorize(
+            #[inline(always)]
+            || prepare_all(simd, rows, bodies, step)
+        ));
     }
 
     /// The energy that the contacts take, and the impulses on the bodies.
@@ -162,5 +158,14 @@ impl Solver {
         totals.slip += found.chunks.iter().flat_map(|chunk| &chunk.released).sum::<f64>();
         std::mem::swap(&mut state.pair_springs, &mut self.springs);
         std::mem::swap(&mut state.pair_impulses, &mut self.contact_impulses);
+    }
+}
+
+#[inline(always)]
+fn prepare_all<S: Simd>(simd: S, rows: &mut Rows, bodies: &[SolverBody], step: Step) {
+    let Rows { packs, rows, laws, .. } = rows;
+    for pack in packs {
+        let range = pack.start as usize..pack.end as usize;
+        prepare(simd, pack, (&mut rows[range.clone()], &mut laws[range]), bodies, step);
     }
 }
