@@ -18,8 +18,8 @@ use tumble::{DQuat, DVec3, World};
 use crate::checkpoint::read_checkpoint;
 use crate::plot::EnergyRow;
 use crate::run::{
-    CHECKPOINT_FILE, CsvReader, ENERGY_FILE, RowError, SCENE_FILE, TRAJECTORY_FILE,
-    TRAJECTORY_HEADER, EnergyColumns, parse_energy, parse_trajectory,
+    CHECKPOINT_FILE, CsvReader, ENERGY_FILE, EnergyColumns, RowError, SCENE_FILE, TRAJECTORY_FILE,
+    TRAJECTORY_HEADER, parse_energy, parse_trajectory,
 };
 use crate::scene::{LoadOptions, Loaded, Scene, SceneError, load_recorded_file};
 

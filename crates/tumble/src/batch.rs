@@ -110,7 +110,8 @@ pub fn for_each_batch(
         return;
     }
     scratch.resize(state.bodies.len());
-    let Scratch { may_touch, forces, springs: next_springs, workspaces, body_contacts, .. } = scratch;
+    let Scratch { may_touch, forces, springs: next_springs, workspaces, body_contacts, .. } =
+        scratch;
     // a single batch adds to the totals of the run directly
     let is_single = workspaces.len() < 2;
     for workspace in &mut *workspaces {

@@ -14,8 +14,8 @@ mod weighted_shapes;
 use self::body_model::Shared;
 use self::checks::{behind_walls, duplicate_names, overlaps};
 use crate::{
-    BuildError, BuildErrors, Integrator, MaterialOverride, Model, Overlaps, State, Surface, WallPlane, World,
-    critical_dt,
+    BuildError, BuildErrors, Integrator, MaterialOverride, Model, Overlaps, State, Surface,
+    WallPlane, World, critical_dt,
 };
 
 pub use self::body::Body;

@@ -52,6 +52,7 @@ impl State {
         [totals.drag, totals.dashpot, totals.slip, totals.max_depth].into_iter().for_each(&mut put);
         put(f64::from_bits(totals.evaluations));
         if totals.iterations != 0 {
+            put(self.since_kick);
             put(totals.numerical);
             put(f64::from_bits(totals.iterations));
             put(f64::from_bits(totals.not_converged));

@@ -1,7 +1,7 @@
 //! Checks whether a state, such as one from a checkpoint, fits a model.
 
-use crate::state::{PairOrder, pair_order};
 use crate::contact::contact_particles;
+use crate::state::{PairOrder, pair_order};
 use crate::{
     BodyModel, ContactImpulse, ContactKind, FrictionSpring, Integrator, Model, PairSpring, State,
 };
@@ -120,6 +120,8 @@ impl State {
         }
         check_pair_springs(model, &self.pair_springs)?;
         self.check_impulses(model)?;
+        let is_valid = (0.0..=model.dt).contains(&self.since_kick);
+        check_values("", &[("since_kick", is_valid)])?;
         let totals = &self.totals;
         let values = [
             ("drag", totals.drag.is_finite()),

@@ -19,6 +19,8 @@ pub struct State {
     /// The impulses of the latest kick at the contacts of `pair_springs`, which the next kick begins its iterations with; with the
     /// integrator [`Implicit`](crate::Integrator::Implicit), else empty.
     pub pair_impulses: Vec<ContactImpulse>,
+    /// The time since the latest kick (s), with the integrator `Implicit`, whose steps may be divided; else 0.
+    pub since_kick: f64,
     /// Accumulated losses and extremes.
     pub totals: RunTotals,
 }

@@ -9,10 +9,12 @@
 //! - number of friction springs between bodies, and for each spring: first body, second body, kind of
 //!   contact (one byte), particle, other, stretch;
 //! - number of impulses of these contacts, and for each: normal, tangential (absent before version 5);
+//! - time since the latest kick (likewise);
 //! - the totals (the last three are absent before version 5).
 
 use tumble::{
-    BodyState, ContactImpulse, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, RunTotals, State,
+    BodyState, ContactImpulse, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, RunTotals,
+    State,
 };
 
 use super::OLDEST_VERSION;
@@ -41,7 +43,8 @@ const CONTACT_KINDS: [ContactKind; 4] = [
 /// Encodes a state.
 pub(super) fn encode(state: &State) -> Vec<u8> {
     // destructured completely, so that the compiler reports a new field here
-    let State { step, time, bodies, springs, pair_springs, pair_impulses, totals } = state;
+    let State { step, time, bodies, springs, pair_springs, pair_impulses, since_kick, totals } =
+        state;
     let spring_count: usize = springs.iter().map(Vec::len).sum();
     let spring_bytes = spring_count * SPRING_LENGTH
         + pair_springs.len() * PAIR_SPRING_LENGTH
@@ -92,6 +95,7 @@ pub(super) fn encode(state: &State) -> Vec<u8> {
         push_numbers(&mut out, [*normal]);
         push_numbers(&mut out, tangential.to_array());
     }
+    push_numbers(&mut out, [*since_kick]);
     let RunTotals { drag, dashpot, slip, work, max_depth, evaluations, .. } = *totals;
     push_numbers(&mut out, [drag, dashpot, slip, work, max_depth]);
     out.extend(evaluations.to_le_bytes());
@@ -116,6 +120,7 @@ pub(super) fn decode(mut bytes: Bytes, version: u32) -> Option<State> {
     let pair_springs = pair_springs(&mut bytes)?;
     let has_impulses = version >= FIRST_WITH_IMPULSES;
     let pair_impulses = if has_impulses { impulses(&mut bytes)? } else { Vec::new() };
+    let since_kick = if has_impulses { bytes.f64()? } else { 0.0 };
     let mut totals = RunTotals {
         drag: bytes.f64()?,
         dashpot: bytes.f64()?,
@@ -129,7 +134,8 @@ pub(super) fn decode(mut bytes: Bytes, version: u32) -> Option<State> {
         totals.numerical = bytes.f64()?;
         (totals.iterations, totals.not_converged) = (bytes.u64()?, bytes.u64()?);
     }
-    let state = State { step, time, bodies, springs, pair_springs, pair_impulses, totals };
+    let state =
+        State { step, time, bodies, springs, pair_springs, pair_impulses, since_kick, totals };
     bytes.is_empty().then_some(state)
 }
 

@@ -165,8 +165,10 @@ fn notes(scene: &Scene) -> Vec<String> {
 
 /// Copies a state into `copy`, reusing its memory.
 fn copy_state(copy: &mut State, state: &State) {
-    let State { step, time, bodies, springs, pair_springs, pair_impulses, totals } = state;
+    let State { step, time, bodies, springs, pair_springs, pair_impulses, since_kick, totals } =
+        state;
     (copy.step, copy.time, copy.totals) = (*step, *time, *totals);
+    copy.since_kick = *since_kick;
     copy.bodies.clone_from(bodies);
     copy.springs.clone_from(springs);
     copy.pair_springs.clone_from(pair_springs);

@@ -2,8 +2,8 @@
 
 use toml::{Table, Value};
 use tumble::{
-    DQuat, DVec3, Damping, Integrator, MaterialOverride, Oscillation, Overlaps, Primitive, Sampling, Surface,
-    WallBox, WallPlane,
+    DQuat, DVec3, Damping, Integrator, MaterialOverride, Oscillation, Overlaps, Primitive,
+    Sampling, Surface, WallBox, WallPlane,
 };
 
 use super::description::{

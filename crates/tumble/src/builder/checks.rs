@@ -7,7 +7,8 @@ use super::description::WorldBuilder;
 use crate::contact::wall::{WallDepth, depth_in_wall};
 use crate::kinematics::Kinematics;
 use crate::{
-    BodyModel, BodyState, BuildError, Damping, Integrator, Material, Model, Motion, SolverSettings, State, Surface,
+    BodyModel, BodyState, BuildError, Damping, Integrator, Material, Model, Motion, SolverSettings,
+    State, Surface,
 };
 
 impl WorldBuilder {
@@ -38,8 +39,7 @@ impl WorldBuilder {
             let ok = tolerance > 0.0 && tolerance < 1.0;
             check("energy_tolerance", ok, &tolerance, "above 0 and below 1");
             let refines = self.integrator == Integrator::Splitting;
-            let allowed =
-                "left out with the integrators \"euler\" and \"implicit\": only \"splitting\" refines its steps";
+            let allowed = "left out with the integrators \"euler\" and \"implicit\": only \"splitting\" refines its steps";
             check("energy_tolerance", refines, &tolerance, allowed);
             let alone = self.bodies.iter().all(|body| body.surface == Surface::None);
             let allowed = "left out where bodies collide with each other: it refines the steps of each body separately, so use a smaller `dt` instead";

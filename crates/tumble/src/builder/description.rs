@@ -3,9 +3,7 @@
 use glam::DVec3;
 
 use super::body::Body;
-use crate::{
-    Integrator, Material, MaterialOverride, Overlaps, SolverSettings, WallBox, WallPlane,
-};
+use crate::{Integrator, Material, MaterialOverride, Overlaps, SolverSettings, WallBox, WallPlane};
 
 /// The description of a world; [`WorldBuilder::build`] checks it and makes the world.
 #[derive(Clone, Debug)]

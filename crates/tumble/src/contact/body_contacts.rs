@@ -134,12 +134,12 @@ impl BodyContacts {
         state: &mut State,
         solver: &mut Solver,
         forces: &mut [BodyForces],
+        since_kick: SinceKick,
     ) {
-        let since_kick = SinceKick::at_kick(model, state.time);
         self.update_neighbour_lists(model, state, &since_kick);
         self.evaluate::<false>(model, &state.pair_springs, since_kick);
         let Self { poses, contacts, lists, .. } = self;
-        solver.solve(model, &Found { chunks: contacts, lists, poses }, state, forces);
+        solver.solve(model, &Found { chunks: contacts, lists, poses, since_kick }, state, forces);
     }
 
     /// Moves the friction springs after the latest evaluation into the state; to be called once per step.
@@ -198,7 +198,7 @@ impl BodyContacts {
             return 0.0;
         }
         // the tangential springs have stretched since the latest kick
-        let since_kick = SinceKick::at_end_of_step(model, state.time);
+        let since_kick = SinceKick::at_end_of_step(model, state);
         self.move_to(model, state, &since_kick);
         self.evaluate::<true>(model, &state.pair_springs, since_kick);
         let is_solved = model.integrator == Integrator::Implicit;

@@ -149,7 +149,8 @@ impl ChunkNeighbours {
             let is_near = |centre: DVec3, range: f64| {
                 wall.depth(pose.position + pose.rotation * centre) > -(range + pose.skin)
             };
-            particles.collect_slots_where(|centre, range| is_near(centre, range + radius), &mut slots);
+            particles
+                .collect_slots_where(|centre, range| is_near(centre, range + radius), &mut slots);
             slots.retain(|&slot| is_near(particles.at(slot), radius));
             let point = |&particle| ListedContact { particle, other: 0, clear_until: 0.0 };
             self.points.extend(slots.iter().map(point));

@@ -70,7 +70,7 @@ impl BodyPose {
         let [drift_velocity, drift_angular_velocity] =
             mid_flight(model, &kinematics, state, since_kick);
         let step_displacement =
-            model.dt * (length(state.velocity) + length(omega) * body.extent);
+            since_kick.step * (length(state.velocity) + length(omega) * body.extent);
         Self {
             drift_velocity,
             drift_angular_velocity,
@@ -85,7 +85,7 @@ impl BodyPose {
             list_valid_until: 0.0,
             step_displacement,
             reach: if model.integrator == Integrator::Implicit {
-                step_displacement + model.dt * model.dt * length(model.gravity)
+                step_displacement + since_kick.step * since_kick.step * length(model.gravity)
             } else {
                 0.0
             },

@@ -41,23 +41,22 @@ pub fn around_body_contact(
     scratch.body_contacts.store_friction_springs(&mut state.pair_springs);
 }
 
-/// The same with an implicit solution of the contact law, in place of forces.
+/// The same with an implicit solution of the contact law, in place of forces, for a step of length `h` (s).
 pub fn around_implicit_contact(
-    model: &Model,
-    state: &mut State,
-    scratch: &mut Scratch,
+    (model, state, scratch): (&Model, &mut State, &mut Scratch),
+    h: f64,
     before: impl Fn(&mut Batch) + Sync,
     after: impl Fn(&mut Batch) + Sync,
 ) {
+    let since_kick = SinceKick::at_implicit_kick(state, h);
     for_each_batch(model, state, scratch, |batch| {
         before(batch);
-        let Batch { model, time, first, bodies, poses, .. } = batch;
-        let since_kick = SinceKick::at_kick(model, *time);
+        let Batch { model, first, bodies, poses, .. } = batch;
         gather::update_poses(model, *first, poses, bodies, &since_kick);
     });
     if model.has_body_contact {
         let Scratch { body_contacts, solver, forces, .. } = scratch;
-        body_contacts.solve(model, state, solver, forces);
+        body_contacts.solve(model, state, solver, forces, since_kick);
     }
     for_each_batch(model, state, scratch, after);
 }

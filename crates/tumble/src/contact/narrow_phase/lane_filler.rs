@@ -100,7 +100,8 @@ impl<'a> LaneFiller<'a> {
         if self.context.is_solved {
             // over the force, k w δ
             let scale = geometry.weight * geometry.contact_distance_or_depth;
-            let couple = if geometry.couple == DVec3::ZERO { DVec3::ZERO } else { geometry.couple / scale };
+            let couple =
+                if geometry.couple == DVec3::ZERO { DVec3::ZERO } else { geometry.couple / scale };
             set(&mut lanes.couple, lane, couple);
         } else if geometry.couple != DVec3::ZERO {
             let couple = geometry.couple * lanes.stiffness[lane];
@@ -194,7 +195,9 @@ impl<'a> LaneFiller<'a> {
             let gap = -lanes.depth[lane];
             lanes.gap[lane] = if gap < self.reach[lane] { gap } else { f64::INFINITY };
             lanes.spring[lane] = NO_SPRING;
-            if gap < self.reach[lane] && let Some(stretch) = self.history.take(&lanes.spring_key(lane, pair)) {
+            if gap < self.reach[lane]
+                && let Some(stretch) = self.history.take(&lanes.spring_key(lane, pair))
+            {
                 lanes.set_old_stretch(lane, stretch);
                 lanes.spring[lane] = self.history.last_taken();
                 input.has_spring[lane] = 1.0;
@@ -203,7 +206,9 @@ impl<'a> LaneFiller<'a> {
         if lanes.depth[lane] > 0.0 {
             point.clear_until = 0.0;
             pair_index[index] = lanes.pair[lane];
-            if self.context.is_solved && let Some(losses) = losses.get_mut(lanes.pair[lane] as usize) {
+            if self.context.is_solved
+                && let Some(losses) = losses.get_mut(lanes.pair[lane] as usize)
+            {
                 losses.max_depth = losses.max_depth.max(lanes.depth[lane]);
             }
             if lanes.friction[lane] > 0.0 && !self.context.is_solved {

@@ -43,7 +43,9 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
     for index in 0..pairs.len() {
         let pair = &pairs[index];
         let poses = PairPoses::new(context, pair);
-        if poses.path + poses.reach < pair.clear_until && poses.step_displacement <= pair.tunnelling_limit {
+        if poses.path + poses.reach < pair.clear_until
+            && poses.step_displacement <= pair.tunnelling_limit
+        {
             continue;
         }
         if pair.is_point_mesh() {

@@ -50,17 +50,18 @@ impl<'a> PairPoses<'a> {
             poses
         } else {
             // motion that both bodies share does not count
-            Self { step_displacement: poses.relative_step_displacement(pair), ..poses }
+            let h = context.since_kick.step;
+            Self { step_displacement: poses.relative_step_displacement(pair, h), ..poses }
         }
     }
 
-    fn relative_step_displacement(&self, pair: &Pair) -> f64 {
+    fn relative_step_displacement(&self, pair: &Pair, h: f64) -> f64 {
         let Self { model, first, second, .. } = self;
         let rim_speed = |pose: &BodyPose, body: u32| {
             pose.angular_velocity.length() * model.bodies[body as usize].extent
         };
         let rotation = rim_speed(first, pair.first) + rim_speed(second, pair.second);
-        model.dt * ((first.velocity - second.velocity).length() + rotation)
+        h * ((first.velocity - second.velocity).length() + rotation)
     }
 
     /// Whether one body could pass through the other at a point within a step. The lists may hold an older value of
@@ -109,9 +110,7 @@ impl<'a> PairPoses<'a> {
         (lanes.first[lane], lanes.second[lane]) = (*first, pair.second_body());
         let weight = match kind {
             ContactKind::SphereSphere => 1.0,
-            ContactKind::SphereWall => {
-                wall_weight(&self.model.bodies[*first as usize], particle)
-            }
+            ContactKind::SphereWall => wall_weight(&self.model.bodies[*first as usize], particle),
             ContactKind::PointMesh => self.particles(*first).weight(particle as usize),
             ContactKind::MeshPoint => self.particles(*second).weight(particle as usize),
         };

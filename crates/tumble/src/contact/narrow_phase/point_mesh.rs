@@ -53,7 +53,9 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
             for point_index in start..pair.end.min(start + BLOCK as u32) {
                 let point = &mut points[point_index as usize];
                 let mut is_full = false;
-                if path + reach >= point.clear_until || poses.may_tunnel(pair, path, point.clear_until) {
+                if path + reach >= point.clear_until
+                    || poses.may_tunnel(pair, path, point.clear_until)
+                {
                     match query.geometry(point) {
                         Ok(geometry) => {
                             point.clear_until = 0.0;

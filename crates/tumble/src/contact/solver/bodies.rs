@@ -40,7 +40,9 @@ impl SolverBody {
         }
         Self {
             inverse_mass: 1.0 / body.mass,
-            inverse_inertia: symmetric(pose.rotation * body.inverse_inertia * pose.rotation.transpose()),
+            inverse_inertia: symmetric(
+                pose.rotation * body.inverse_inertia * pose.rotation.transpose(),
+            ),
             acceleration: model.gravity,
             ..at_rest
         }

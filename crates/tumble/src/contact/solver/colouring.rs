@@ -28,8 +28,8 @@ impl Colouring {
         let mut count = 0;
         let mut extra = COLOURS;
         for group in groups {
-            let free = [group.first, group.second]
-                .map(|body| bodies[body as usize].inverse_mass > 0.0);
+            let free =
+                [group.first, group.second].map(|body| bodies[body as usize].inverse_mass > 0.0);
             let used_by = |body: u32, is_free| if is_free { self.used[body as usize] } else { 0 };
             let used = used_by(group.first, free[0]) | used_by(group.second, free[1]);
             let colour = used.trailing_ones();
@@ -61,9 +61,11 @@ impl Colouring {
         self.order.sort_by_key(key);
         let order = &self.order;
         self.starts.clear();
-        self.starts.extend((0..=count).map(|colour| {
-            order.partition_point(|&group| colours[group as usize] < colour) as u32
-        }));
+        self.starts.extend(
+            (0..=count).map(|colour| {
+                order.partition_point(|&group| colours[group as usize] < colour) as u32
+            }),
+        );
     }
 }
 
@@ -72,7 +74,14 @@ mod tests {
     use super::*;
 
     fn group(first: u32, second: u32, len: u32) -> Group {
-        Group { first, second, start: 0, end: len, damping_ratio: 0.0, friction_damping_factor: 0.0 }
+        Group {
+            first,
+            second,
+            start: 0,
+            end: len,
+            damping_ratio: 0.0,
+            friction_damping_factor: 0.0,
+        }
     }
 
     #[test]

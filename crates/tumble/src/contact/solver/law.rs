@@ -12,7 +12,7 @@
 //!
 //! The dashpot acts while the points touch: c is multiplied by the part of the step in which they do.
 //!
-//! An impact that lasts less than [`RESOLVED`] steps rebounds at once, with the coefficient of restitution of its dashpots:
+//! An impact that the step does not resolve ([`RESOLVED`]) rebounds at once, with the coefficient of restitution of its dashpots:
 //! u⁺ ≥ −e u⁻ (J. J. Moreau, in *Nonsmooth Mechanics and Applications*, Springer 1988).
 
 use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
@@ -24,10 +24,11 @@ use super::rows::{Pack, Row, RowLaw};
 use crate::lanes::{Columns, LANES, Vec3x8, positive, set};
 use crate::{ContactLaw, restitution};
 
-/// The number of steps that an impact must last for the law of springs and dashpots to give its rebound.
-const RESOLVED: f64 = 4.0;
+/// The number of steps that an impact must last for the law of springs and dashpots to give its rebound: where a coefficient of
+/// restitution is asked for, and where dashpots are given.
+const RESOLVED: [f64; 2] = [8.0, 2.0];
 /// s is 0 below the first of these values of K h²/m, and 1 above the second.
-const RAMP: [f64; 2] = [1.0, 5.0];
+const RAMP: [f64; 2] = [4.0, 20.0];
 
 /// What all rows have in common.
 #[derive(Clone, Copy, Debug)]
@@ -125,12 +126,7 @@ pub(super) fn relative_velocity<S: Simd>(
 }
 
 #[inline(always)]
-fn velocities_before<S: Simd>(
-    simd: S,
-    row: &Row,
-    law: &mut RowLaw,
-    motion: &[LaneMotion<S>; 2],
-) {
+fn velocities_before<S: Simd>(simd: S, row: &Row, law: &mut RowLaw, motion: &[LaneMotion<S>; 2]) {
     let (normal, tangential) = relative_velocity(simd, row, motion);
     law.approach = normal.into();
     law.sliding = (tangential + Vec3x8::load(simd, &law.surface_velocity)).store();
@@ -254,8 +250,7 @@ impl<S: Simd> LaneConstants<S> {
         row.tangential_slope = tangential.slope.into();
         row.tangential_offset = (offset - surface).store();
         row.tangential_mobility = mobility.into();
-        row.tangential_factor =
-            (splat(1.0) / (splat(1.0) + tangential.slope * mobility)).into();
+        row.tangential_factor = (splat(1.0) / (splat(1.0) + tangential.slope * mobility)).into();
     }
 
     /// The part of the step in which the points touch, at the velocity before the kick.
@@ -438,8 +433,9 @@ fn set_rebounds<S: Simd>(
     step: Step,
 ) {
     // ω h above π over the number of steps
-    let limit = (std::f64::consts::PI / RESOLVED).powi(2);
-    let is_short = f64x8::simd_from(simd, *ratio).simd_gt(f64x8::splat(simd, limit));
+    let limits = RESOLVED.map(|steps| (std::f64::consts::PI / steps).powi(2));
+    let limit = patch.damping.map(|given| limits[usize::from(given > 0.0)]);
+    let is_short = f64x8::simd_from(simd, *ratio).simd_gt(f64x8::simd_from(simd, limit));
     let mut coefficients = [f64::NAN; LANES];
     for (row, law) in rows.iter_mut().zip(laws) {
         let approach = f64x8::simd_from(simd, law.approach);
@@ -465,7 +461,6 @@ fn set_rebounds<S: Simd>(
 
 #[inline(always)]
 fn any<S: Simd>(simd: S, mask: mask64x8<S>) -> bool {
-    let lanes: [f64; LANES] =
-        mask.select(f64x8::splat(simd, 1.0), f64x8::splat(simd, 0.0)).into();
+    let lanes: [f64; LANES] = mask.select(f64x8::splat(simd, 1.0), f64x8::splat(simd, 0.0)).into();
     lanes.iter().any(|&lane| lane > 0.0)
 }

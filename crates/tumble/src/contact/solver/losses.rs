@@ -48,9 +48,8 @@ pub(super) fn account<S: Simd>(
             + Vec3x8::load(simd, &row.arms[1]).cross(tangential);
     }
     // what bodies with prescribed motion push with
-    let is_prescribed = |index: usize| {
-        LaneInertia::load(simd, &pack.inertia[index]).inverse_mass.simd_eq(zero)
-    };
+    let is_prescribed =
+        |index: usize| LaneInertia::load(simd, &pack.inertia[index]).inverse_mass.simd_eq(zero);
     let [first, second] = &motion;
     let power = impulse.dot(first.velocity) + torques[0].dot(first.angular_velocity);
     let other_power = impulse.dot(second.velocity) + torques[1].dot(second.angular_velocity);
@@ -161,12 +160,7 @@ impl<S: Simd> Contact<S> {
 
     /// The gap at the next kick.
     #[inline(always)]
-    fn gap_at_next_kick(
-        &self,
-        gap: f64x8<S>,
-        after: f64x8<S>,
-        acceleration: f64x8<S>,
-    ) -> f64x8<S> {
+    fn gap_at_next_kick(&self, gap: f64x8<S>, after: f64x8<S>, acceleration: f64x8<S>) -> f64x8<S> {
         gap + self.h * after + acceleration * self.h * self.h * self.half
     }
 

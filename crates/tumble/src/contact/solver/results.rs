@@ -5,6 +5,7 @@ use fearless_simd::{Level, Simd, dispatch};
 use super::super::chunk_contacts::ChunkContacts;
 use super::super::neighbour_list::NeighbourLists;
 use super::super::pose::BodyPose;
+use super::super::since_kick::SinceKick;
 use super::bodies::SolverBody;
 use super::colouring::Colouring;
 use super::groups::{self, ContactPlace, Group};
@@ -34,6 +35,8 @@ pub(in crate::contact) struct Found<'a> {
     pub chunks: &'a [ChunkContacts],
     pub lists: &'a NeighbourLists,
     pub poses: &'a [BodyPose],
+    /// The flight before the kick.
+    pub since_kick: SinceKick,
 }
 
 impl Solver {
@@ -45,11 +48,10 @@ impl Solver {
         state: &mut State,
         forces: &mut [BodyForces],
     ) {
-        let h = model.dt;
-        let kick_time = state.time + 0.5 * h;
+        let SinceKick { step: h, time, .. } = found.since_kick;
         self.bodies.clear();
         let bodies = model.bodies.iter().zip(found.poses);
-        self.bodies.extend(bodies.map(|(body, pose)| SolverBody::new(model, body, pose, kick_time)));
+        self.bodies.extend(bodies.map(|(body, pose)| SolverBody::new(model, body, pose, time)));
         self.bodies.push(SolverBody::default());
         let count = model.bodies.len() as u32;
         groups::collect(found.chunks, found.lists, count, &mut self.places, &mut self.groups);
@@ -73,7 +75,7 @@ impl Solver {
             ..RunTotals::default()
         };
         self.account(step, &mut totals);
-        self.move_bodies(model, state, forces, &mut totals);
+        self.move_bodies(model, h, (state, forces), &mut totals);
         self.store(found, state, &mut totals);
         state.totals += totals;
     }
@@ -113,8 +115,8 @@ impl Solver {
     fn move_bodies(
         &self,
         model: &Model,
-        state: &mut State,
-        forces: &mut [BodyForces],
+        h: f64,
+        (state, forces): (&mut State, &mut [BodyForces]),
         totals: &mut RunTotals,
     ) {
         let bodies = model.bodies.iter().zip(&mut state.bodies).zip(forces);
@@ -124,7 +126,7 @@ impl Solver {
                 continue;
             }
             let Wrench { force, torque } = impulse;
-            let per_time = 1.0 / model.dt;
+            let per_time = 1.0 / h;
             forces.spring = Wrench { force: force * per_time, torque: torque * per_time };
             if body.is_free() {
                 state.velocity += force / body.mass;

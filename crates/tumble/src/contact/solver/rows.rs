@@ -186,7 +186,9 @@ impl Source<'_> {
         }
         if from.has_surface_velocity {
             let of_body = |index: u32| {
-                self.poses.get(index as usize).map_or(glam::DVec3::ZERO, |pose| pose.surface_velocity)
+                self.poses
+                    .get(index as usize)
+                    .map_or(glam::DVec3::ZERO, |pose| pose.surface_velocity)
             };
             let surface = of_body(from.first[old]) - of_body(from.second[old]);
             set(&mut law.surface_velocity, lane, surface - normal * surface.dot(normal));
