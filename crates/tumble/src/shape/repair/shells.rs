@@ -1,0 +1,182 @@
+//! The closed surfaces of a mesh: connected components, with consistent winding.
+//!
+//! Faces are connected where exactly two meet at an edge. At an edge with more faces, components pass by each other, as
+//! where two cubes share an edge. Components that are closed only together, as where a wall divides a box, are one shell.
+
+use glam::DVec3;
+
+use super::edges::EdgeTable;
+use super::faces::Faces;
+use super::sets::ParitySets;
+use crate::shape::mesh::Mesh;
+
+/// The longest allowed boundary of a shell, in units of the square root of its area: that of a small hole.
+const HOLE: f64 = 0.25;
+
+/// The faces by shell.
+pub(super) struct Shells {
+    /// For each face the closed shell that it belongs to.
+    pub of_face: Vec<Option<u32>>,
+    /// The number of shells that are closed, but for small holes.
+    pub count: usize,
+    /// For each face whether its winding differs from that of most faces connected with it.
+    pub rewound: Vec<bool>,
+    /// The number of edges of two faces at which no winding of the component is consistent, as on a Möbius strip.
+    pub one_sided: usize,
+    /// The middle of the first of these edges (m).
+    pub first_one_sided: Option<DVec3>,
+}
+
+impl Shells {
+    pub fn new(mesh: &Mesh, faces: &Faces) -> Self {
+        let table = EdgeTable::new(&faces.corners, mesh.vertices.len());
+        let mut sets = ParitySets::new(faces.len());
+        let mut contradictions: Vec<(u32, DVec3)> = Vec::new();
+        for (lower, edge) in table.edges() {
+            if let [a, b] = edge {
+                let differ = a.is_descending == b.is_descending;
+                if !sets.join(a.face, b.face, differ) {
+                    let ends = [lower, a.upper].map(|i| mesh.vertices[i as usize]);
+                    contradictions.push((a.face, 0.5 * ends[0] + 0.5 * ends[1]));
+                }
+            }
+        }
+        let (component, mut rewound) = majority(&mut sets, faces.len());
+        // on a one-sided component no winding is right
+        let count = component.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut is_one_sided = vec![false; count];
+        for &(face, _) in &contradictions {
+            is_one_sided[component[face as usize] as usize] = true;
+        }
+        for (face, rewound) in rewound.iter_mut().enumerate() {
+            *rewound &= !is_one_sided[component[face] as usize];
+        }
+        let mut parts = Parts {
+            of_face: component,
+            rewound,
+            closed: is_one_sided.iter().map(|&one_sided| !one_sided).collect(),
+        };
+        parts.join_at_edges(&table);
+        parts.check_boundaries(mesh, faces, &table);
+        let (of_face, count) = parts.closed_ones();
+        Self {
+            of_face,
+            count,
+            rewound: parts.rewound,
+            one_sided: contradictions.len(),
+            first_one_sided: contradictions.first().map(|c| c.1),
+        }
+    }
+}
+
+/// Connected parts of the faces.
+struct Parts {
+    /// For each face the part that it belongs to.
+    of_face: Vec<u32>,
+    rewound: Vec<bool>,
+    /// For each part whether it is closed.
+    closed: Vec<bool>,
+}
+
+impl Parts {
+    /// Joins components that are not closed by themselves at edges where more than two faces meet. They keep their winding.
+    fn join_at_edges(&mut self, table: &EdgeTable) {
+        let mut groups = ParitySets::new(self.closed.len());
+        let mut joined = vec![false; self.closed.len()];
+        for (_, edge) in table.edges().filter(|(_, edge)| edge.len() > 2) {
+            let mut net: Vec<(u32, i64)> = edge
+                .iter()
+                .map(|half| {
+                    let is_descending = half.is_descending ^ self.rewound[half.face as usize];
+                    (self.of_face[half.face as usize], if is_descending { -1 } else { 1 })
+                })
+                .collect();
+            net.sort_unstable();
+            let mut first: Option<u32> = None;
+            for part in net.chunk_by(|a, b| a.0 == b.0) {
+                if part.iter().map(|p| p.1).sum::<i64>() == 0 {
+                    continue;
+                }
+                let this = part[0].0;
+                joined[this as usize] = true;
+                groups.join(*first.get_or_insert(this), this, false);
+            }
+        }
+        for face in 0..self.of_face.len() {
+            let component = self.of_face[face];
+            let group = groups.root(component).0;
+            self.rewound[face] &= !joined[component as usize];
+            self.closed[group as usize] &= self.closed[component as usize];
+            self.of_face[face] = group;
+        }
+    }
+
+    /// Marks parts as not closed that have faulty edges, other than those of small holes.
+    fn check_boundaries(&mut self, mesh: &Mesh, faces: &Faces, table: &EdgeTable) {
+        let mut area = vec![0.0; self.closed.len()];
+        for (face, &shell) in self.of_face.iter().enumerate() {
+            let [a, b, c] = faces.places(mesh, face);
+            area[shell as usize] += 0.5 * (b - a).cross(c - a).length();
+        }
+        let mut boundary = vec![0.0; self.closed.len()];
+        for (lower, edge) in table.edges() {
+            let mut net: Vec<(u32, i64)> = Vec::new();
+            for half in edge {
+                let is_descending = half.is_descending ^ self.rewound[half.face as usize];
+                let step = if is_descending { -1 } else { 1 };
+                let shell = self.of_face[half.face as usize];
+                match net.iter_mut().find(|(other, _)| *other == shell) {
+                    Some((_, sum)) => *sum += step,
+                    None => net.push((shell, step)),
+                }
+            }
+            let ends = [lower, edge[0].upper].map(|i| mesh.vertices[i as usize]);
+            for (shell, _) in net.into_iter().filter(|&(_, sum)| sum != 0) {
+                boundary[shell as usize] += ends[0].distance(ends[1]);
+            }
+        }
+        for (shell, closed) in self.closed.iter_mut().enumerate() {
+            *closed &= boundary[shell] <= HOLE * area[shell].sqrt();
+        }
+    }
+
+    /// For each face the number of its part among those that are closed, and how many there are.
+    fn closed_ones(&self) -> (Vec<Option<u32>>, usize) {
+        let mut number = vec![None; self.closed.len()];
+        let mut count = 0;
+        let of_face = self.of_face.iter().map(|&part| {
+            if !self.closed[part as usize] {
+                return None;
+            }
+            let name = &mut number[part as usize];
+            if name.is_none() {
+                *name = Some(count);
+                count += 1;
+            }
+            *name
+        });
+        let of_face = of_face.collect();
+        (of_face, count as usize)
+    }
+}
+
+/// The component of each face, numbered in order, and whether its winding is that of fewer faces of the component.
+fn majority(sets: &mut ParitySets, count: usize) -> (Vec<u32>, Vec<bool>) {
+    let mut number = vec![u32::MAX; count];
+    let (mut component, mut odd) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    let mut balance: Vec<i64> = Vec::new();
+    for face in 0..count as u32 {
+        let (root, is_odd) = sets.root(face);
+        let name = &mut number[root as usize];
+        if *name == u32::MAX {
+            *name = balance.len() as u32;
+            balance.push(0);
+        }
+        balance[*name as usize] += if is_odd { -1 } else { 1 };
+        component.push(*name);
+        odd.push(is_odd);
+    }
+    let is_minority = |(&component, odd): (&u32, bool)| odd == (balance[component as usize] >= 0);
+    let rewound = component.iter().zip(odd).map(is_minority).collect();
+    (component, rewound)
+}
