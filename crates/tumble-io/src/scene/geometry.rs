@@ -88,7 +88,7 @@ pub fn load_points(geometry: &mut Geometry, folder: &Path) -> Result<Mesh, Geome
 fn key_of_error(body: &BodyScene, error: &ShapeError) -> &'static str {
     match error {
         ShapeError::Sample(_) => "sampling",
-        ShapeError::Open(_) | ShapeError::Shell(_) => "mass_model",
+        ShapeError::Open(_) | ShapeError::Shell(_) | ShapeError::Impossible { .. } => "mass_model",
         ShapeError::TooLarge => "scale",
         _ => match body.geometry {
             Geometry::Mesh(_) => "mesh",
