@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use tumble::{DVec3, MassModel, Mesh, Sampling, Shape, Watertightness};
-use tumble_io::mesh::{MeshFile, Prepared, Repair, Weld, prepare, read_mesh};
+use tumble_io::mesh::{MeshFile, Prepared, Repair, Weld, WeldReport, prepare, read_mesh};
 
 use crate::failure::{Failure, print};
 use crate::format::{count, number, wrapped_columns};
@@ -110,6 +110,7 @@ impl Report<'_> {
             rows.push(("unit", text));
         }
         rows.push(("particles", particles(file)));
+        rows.extend(file.weld.as_ref().map(|weld| ("weld", merged(weld))));
         rows.push(("triangles", count(mesh.triangles.len() as u64)));
         let notes = self.prepared.notes().into_iter().chain(self.prepared.repair_note());
         rows.extend(notes.map(|note| ("", note)));
@@ -162,7 +163,7 @@ impl Report<'_> {
             rows.push(("volume", format!("{} m³", number(solid.measure))));
         }
         if let Ok(shell) = mesh.shell_integrals() {
-            rows.push(("surface", format!("{} m²", number(shell.measure))));
+            rows.push(("surface area", format!("{} m²", number(shell.measure))));
         }
         rows
     }
@@ -215,19 +216,21 @@ fn watertight(edges: &Watertightness) -> String {
 }
 
 fn particles(file: &MeshFile) -> String {
-    let kept = count(file.mesh.vertices.len() as u64);
-    let Some(weld) = file.weld else { return kept };
-    let all = count(file.file_vertex_count as u64);
-    let equal = count(weld.equal as u64);
-    let mut text = match (weld.equal, weld.near) {
-        (0, 0) => kept,
-        (_, 0) => format!("{kept} of {all} vertices ({equal} equal to others)"),
-        (_, near) => format!(
-            "{kept} of {all} vertices ({equal} equal to others, {} within {} of others)",
-            count(near as u64),
-            number(weld.tolerance)
-        ),
-    };
+    let (kept, all) = (file.mesh.vertices.len(), file.file_vertex_count);
+    if kept == all {
+        return count(kept as u64);
+    }
+    format!("{} of {} vertices", count(kept as u64), count(all as u64))
+}
+
+/// What was merged.
+fn merged(weld: &WeldReport) -> String {
+    let mut text = format!(
+        "{} equal to others; {} within {} of others, at open edges",
+        plural(weld.equal, "vertex", "vertices"),
+        count(weld.near as u64),
+        number(weld.tolerance)
+    );
     if weld.collapsed > 0 {
         let triangles = plural(weld.collapsed, "triangle", "triangles");
         text += &format!("; {triangles} of no area left out");

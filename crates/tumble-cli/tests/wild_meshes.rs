@@ -102,9 +102,17 @@ fn rounding_noise_between_facets_closes() {
     for noise in [1.2e-17, 1e-7] {
         dir.write("cube.stl", stl("solid cube", &cube([0.5; 3], 1.0), noise));
         let out = dir.tumble(&["info", "cube.stl"]).expect_status(0).stdout;
-        assert_contains(&out, &["8 of 36 vertices (", "within 1.73", "watertight         yes"]);
+        assert_contains(
+            &out,
+            &[
+                "8 of 36 vertices\n",
+                " vertices equal to others; ",
+                "within 1.73",
+                "watertight         yes",
+            ],
+        );
         let report = run_solid(&dir, "cube.stl", "surface = \"mesh\"");
-        assert_contains(&report, &["mesh cube.stl: ", "at open edges within 1.7"]);
+        assert_contains(&report, &["mesh cube.stl: ", "at open edges within 1.73e-6"]);
         let spin = "initial_angular_velocity = [1, 0, 0]\nsurface = \"mesh\"";
         run_solid(&dir, "cube.stl", spin);
         // a cube of 1000 kg has the moments 1000/6
@@ -115,7 +123,7 @@ fn rounding_noise_between_facets_closes() {
     let rejected = dir.tumble(&["info", "rough.stl"]).expect_status(0).stdout;
     assert_contains(&rejected, &["as solid           no: it is open at", "set weld = 2e-4"]);
     let out = dir.tumble(&["info", "rough.stl", "--weld", "1e-3"]).expect_status(0).stdout;
-    assert_contains(&out, &["within 0.001 of others", "as solid           yes"]);
+    assert_contains(&out, &["within 0.001 of others, at open edges", "as solid           yes"]);
     run_solid(&dir, "rough.stl", "weld = 1e-3\nscale = 0.5");
     assert_contains(&dir.read("out/scene.toml"), &["weld = 0.001"]);
     dir.run(&["out/scene.toml"], "again");
@@ -186,7 +194,17 @@ fn holes_are_closed_on_request_only() {
         &["as solid           no: it is open at 4 edges", "set mesh_repair = \"close\""],
     );
     let scene = format!("{SOLID}mesh = \"open.stl\"\n");
-    assert_contains(&dir.rejected(&scene, &[]), &["`body.0.mass_model`", "4 open"]);
+    let message = dir.rejected(&scene, &[]);
+    assert_contains(
+        &message,
+        &["`body.0.mass_model`", "4 open", "`tumble info ", "which key helps"],
+    );
+    let scene = "[[body]]\nmesh = \"open.stl\"\nsurface = \"mesh\"\n";
+    let message = dir.rejected(scene, &[]);
+    assert_contains(
+        &message,
+        &["`body.0.surface` cannot work", "`tumble info ", "which key helps"],
+    );
     let out = dir.tumble(&["info", "open.stl", "--repair", "close"]).expect_status(0).stdout;
     assert_contains(
         &out,
@@ -206,7 +224,7 @@ fn holes_are_closed_on_request_only() {
         &dir.rejected(&scene, &[]),
         &[
             "`body.0.mesh_repair` cannot be done",
-            "the hole of 6 edges at (0.5000, 0.3333, 0.3333)",
+            "the hole of 6 edges at (0.5, 0.333333, 0.333333)",
             "not planar",
         ],
     );

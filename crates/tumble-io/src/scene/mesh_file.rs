@@ -53,7 +53,14 @@ fn put_right(mesh: &mut MeshScene, file: &MeshFile) -> Result<Mesh, GeometryErro
     })?;
     let of_weld = file.weld.filter(|weld| weld.near > 0).map(|weld| {
         let vertices = counted(weld.near, "vertex", "vertices");
-        format!("{vertices} at open edges within {:e} of others: merged", weld.tolerance)
+        let collapsed = match weld.collapsed {
+            0 => String::new(),
+            n => format!("; {} of no area left out", counted(n, "triangle", "triangles")),
+        };
+        format!(
+            "{vertices} at open edges within {:.2e} of others: merged{collapsed}",
+            weld.tolerance
+        )
     });
     mesh.notes = MeshNotes {
         points: of_weld.into_iter().chain(prepared.repair_note()).collect(),

@@ -82,23 +82,28 @@ impl std::fmt::Display for Watertightness {
                 EdgeFault::Open => "open",
                 EdgeFault::WronglyWound => "wrongly wound",
             };
-            write!(
-                f,
-                "{} {what} from vertex {a} ({}, {}, {}) to vertex {b} ({}, {}, {})",
-                if nth == 0 { ";" } else { "," },
-                p.x,
-                p.y,
-                p.z,
-                q.x,
-                q.y,
-                q.z
-            )?;
+            let separator = if nth == 0 { ";" } else { "," };
+            let (p, q) = (short(p), short(q));
+            write!(f, "{separator} {what} from vertex {a} {p} to vertex {b} {q}")?;
         }
         if self.open_edges + self.wrongly_wound > self.first.len() {
             write!(f, ", …")?;
         }
         Ok(())
     }
+}
+
+/// A point with the digits by which it can be found.
+pub(super) fn short(place: DVec3) -> String {
+    let [x, y, z] = place.to_array().map(|x| {
+        // adding zero turns −0 into 0
+        let x = x + 0.0;
+        let is_usual = x == 0.0 || (1e-3..1e6).contains(&x.abs());
+        let text = if is_usual { format!("{x:.6}") } else { format!("{x:.4e}") };
+        let (digits, exponent) = text.split_at(text.find('e').unwrap_or(text.len()));
+        format!("{}{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
+    });
+    format!("({x}, {y}, {z})")
 }
 
 /// For each vertex, the lowest index of the vertices at the same coordinates.
@@ -203,6 +208,13 @@ mod tests {
                 .starts_with("the mesh is not closed: 3 open and 0 wrongly wound edges; open from vertex 0 (0, 0, 0) to vertex 2 (0, 1, 0)"),
             "{found}"
         );
+    }
+
+    #[test]
+    fn places_are_short() {
+        let place = DVec3::new(0.1 + 0.2, 1.2e-17, -1234567.0);
+        assert_eq!(short(place), "(0.3, 1.2e-17, -1.2346e6)");
+        assert_eq!(short(DVec3::new(10.0, 100.5, -0.0)), "(10, 100.5, 0)");
     }
 
     #[test]

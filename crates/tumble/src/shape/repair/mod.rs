@@ -1,10 +1,12 @@
 //! Meshes from the wild: what is wrong with them, and what can be put right without guessing.
 //!
 //! Each file has one step, in the order in which they are meant: `weld`, `duplicates`, `orientation` (with `shells`
-//! and `containment`), `holes` and `close`.
+//! and `containment`), `holes` and `close` (with `cracks` and
+//! `triangulate`).
 
 mod close;
 mod containment;
+mod cracks;
 mod duplicates;
 mod edges;
 mod faces;

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::edges::EdgeTable;
+use super::edges::{EdgeOfFace, EdgeTable};
 use super::faces::Faces;
 use super::sets::ParitySets;
 use crate::shape::mesh::Mesh;
@@ -84,20 +84,8 @@ impl Parts {
         let mut groups = ParitySets::new(self.closed.len());
         let mut joined = vec![false; self.closed.len()];
         for (_, edge) in table.edges().filter(|(_, edge)| edge.len() > 2) {
-            let mut net: Vec<(u32, i64)> = edge
-                .iter()
-                .map(|half| {
-                    let is_descending = half.is_descending ^ self.rewound[half.face as usize];
-                    (self.of_face[half.face as usize], if is_descending { -1 } else { 1 })
-                })
-                .collect();
-            net.sort_unstable();
             let mut first: Option<u32> = None;
-            for part in net.chunk_by(|a, b| a.0 == b.0) {
-                if part.iter().map(|p| p.1).sum::<i64>() == 0 {
-                    continue;
-                }
-                let this = part[0].0;
+            for this in self.unbalanced(edge) {
                 joined[this as usize] = true;
                 groups.join(*first.get_or_insert(this), this, false);
             }
@@ -111,6 +99,27 @@ impl Parts {
         }
     }
 
+    /// The parts that have more half-edges in one direction at an edge.
+    fn unbalanced(&self, edge: &[EdgeOfFace]) -> Vec<u32> {
+        let net = |half: &EdgeOfFace| {
+            let is_descending = half.is_descending ^ self.rewound[half.face as usize];
+            (self.of_face[half.face as usize], if is_descending { -1i64 } else { 1 })
+        };
+        // nearly all edges are like this
+        if let [a, b] = edge
+            && let ((part_a, step_a), (part_b, step_b)) = (net(a), net(b))
+            && part_a == part_b
+            && step_a + step_b == 0
+        {
+            return Vec::new();
+        }
+        let mut all: Vec<(u32, i64)> = edge.iter().map(net).collect();
+        all.sort_unstable();
+        let parts = all.chunk_by(|a, b| a.0 == b.0);
+        let uneven = parts.filter(|part| part.iter().map(|p| p.1).sum::<i64>() != 0);
+        uneven.map(|part| part[0].0).collect()
+    }
+
     /// Marks parts as not closed that have faulty edges, other than those of small holes.
     fn check_boundaries(&mut self, mesh: &Mesh, faces: &Faces, table: &EdgeTable) {
         let mut area = vec![0.0; self.closed.len()];
@@ -120,18 +129,8 @@ impl Parts {
         }
         let mut boundary = vec![0.0; self.closed.len()];
         for (lower, edge) in table.edges() {
-            let mut net: Vec<(u32, i64)> = Vec::new();
-            for half in edge {
-                let is_descending = half.is_descending ^ self.rewound[half.face as usize];
-                let step = if is_descending { -1 } else { 1 };
-                let shell = self.of_face[half.face as usize];
-                match net.iter_mut().find(|(other, _)| *other == shell) {
-                    Some((_, sum)) => *sum += step,
-                    None => net.push((shell, step)),
-                }
-            }
             let ends = [lower, edge[0].upper].map(|i| mesh.vertices[i as usize]);
-            for (shell, _) in net.into_iter().filter(|&(_, sum)| sum != 0) {
+            for shell in self.unbalanced(edge) {
                 boundary[shell as usize] += ends[0].distance(ends[1]);
             }
         }

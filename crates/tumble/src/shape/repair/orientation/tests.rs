@@ -29,6 +29,32 @@ fn each_component_is_turned_outwards() {
 }
 
 #[test]
+fn without_that_a_part_with_negative_volume_is_an_error() {
+    let far = inside_out(&cuboid(DVec3::X * 3.0, DVec3::splat(0.9)));
+    let mesh = joined(&cube(DVec3::ZERO), &far);
+    let error = mesh.solid_integrals().unwrap_err();
+    assert!(matches!(error, crate::SolidError::Impossible { .. }));
+    let text = error.to_string();
+    assert!(
+        text.contains("2.7100e-1 m³ with its centre at (-8.07") && text.contains("inwards"),
+        "{text}"
+    );
+}
+
+#[test]
+fn faces_with_different_diagonals_between_two_boxes_do_no_harm() {
+    // the second box shares a face with the first, cut along the other diagonal
+    let mut second = cube(DVec3::X);
+    second.triangles.retain(|t| *t != [0, 4, 6] && *t != [0, 6, 2]);
+    second.triangles.extend([[0, 4, 2], [4, 6, 2]]);
+    let mesh = joined(&cube(DVec3::ZERO), &second);
+    assert!(mesh.watertightness().is_closed() && mesh.watertightness().non_manifold > 0);
+    let found = mesh.without_duplicates();
+    assert_eq!((found.copies, found.opposite), (0, 0));
+    assert!((volume(&found.mesh.oriented().mesh) - 2.0).abs() < 1e-12);
+}
+
+#[test]
 fn surfaces_inside_others_bound_cavities_by_turns() {
     let radii = [1.0, 0.7, 0.4];
     let [a, b, c] = radii.map(|r| volume(&ball(r)));
