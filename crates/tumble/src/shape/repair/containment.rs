@@ -12,7 +12,7 @@ const MAX_SIDE: usize = 2048;
 /// Above this number of surfaces, only those are judged in which the first ray finds something.
 const MANY: usize = 1000;
 /// The most tests of a ray against a triangle, for all rays together; a mesh that needs more is not judged.
-const MAX_TESTS: usize = 300_000_000;
+const MAX_TESTS: usize = 100_000_000;
 /// A point closer to a surface than this fraction of the mesh's size lies on it, and says nothing.
 const ON_SURFACE: f64 = 1e-9;
 /// A surface with small holes contains another if this share of the rays says so.

@@ -1,8 +1,7 @@
 //! Meshes from the wild: what is wrong with them, and what can be put right without guessing.
 //!
-//! Each file has one step, in the order in which they are meant: `weld`, `duplicates`, `orientation` (with `shells`
-//! and `containment`), `holes` and `close` (with `cracks` and
-//! `triangulate`).
+//! Each step has a file, in the order in which they are meant: `weld`, `duplicates`, `orientation` (with `shells`, `groups` and
+//! `containment`), `holes` and `close` (with `cracks` and `triangulate`).
 
 mod close;
 mod containment;
@@ -10,6 +9,7 @@ mod cracks;
 mod duplicates;
 mod edges;
 mod faces;
+mod groups;
 mod holes;
 mod orientation;
 mod sets;

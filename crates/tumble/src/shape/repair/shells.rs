@@ -1,12 +1,15 @@
 //! The closed surfaces of a mesh: connected components, with consistent winding.
 //!
 //! Faces are connected where exactly two meet at an edge. At an edge with more faces, components pass by each other, as
-//! where two cubes share an edge. Components that are closed only together, as where a wall divides a box, are one shell.
+//! where two cubes share an edge. Components that are closed only together are one shell (`groups`).
+
+use std::collections::BTreeSet;
 
 use glam::DVec3;
 
 use super::edges::{EdgeOfFace, EdgeTable};
 use super::faces::Faces;
+use super::groups::{Uneven, closed_groups};
 use super::sets::ParitySets;
 use crate::shape::mesh::Mesh;
 
@@ -79,28 +82,22 @@ struct Parts {
 }
 
 impl Parts {
-    /// Joins components that are not closed by themselves at edges where more than two faces meet. They keep their winding.
+    /// Joins components that are not closed by themselves at edges where more than two faces meet.
     fn join_at_edges(&mut self, table: &EdgeTable) {
-        let mut groups = ParitySets::new(self.closed.len());
-        let mut joined = vec![false; self.closed.len()];
-        for (_, edge) in table.edges().filter(|(_, edge)| edge.len() > 2) {
-            let mut first: Option<u32> = None;
-            for this in self.unbalanced(edge) {
-                joined[this as usize] = true;
-                groups.join(*first.get_or_insert(this), this, false);
-            }
+        let many = table.edges().filter(|(_, edge)| edge.len() > 2);
+        let uneven: BTreeSet<Uneven> = many.map(|(_, edge)| self.uneven(edge)).collect();
+        let uneven = uneven.into_iter().filter(|edge| !edge.is_empty()).collect();
+        let group = closed_groups(self.closed.len(), &uneven);
+        for (component, &group) in group.iter().enumerate() {
+            self.closed[group as usize] &= self.closed[component];
         }
-        for face in 0..self.of_face.len() {
-            let component = self.of_face[face];
-            let group = groups.root(component).0;
-            self.rewound[face] &= !joined[component as usize];
-            self.closed[group as usize] &= self.closed[component as usize];
-            self.of_face[face] = group;
+        for part in &mut self.of_face {
+            *part = group[*part as usize];
         }
     }
 
-    /// The parts that have more half-edges in one direction at an edge.
-    fn unbalanced(&self, edge: &[EdgeOfFace]) -> Vec<u32> {
+    /// The parts that have more half-edges in one direction at an edge, and how many more.
+    fn uneven(&self, edge: &[EdgeOfFace]) -> Uneven {
         let net = |half: &EdgeOfFace| {
             let is_descending = half.is_descending ^ self.rewound[half.face as usize];
             (self.of_face[half.face as usize], if is_descending { -1i64 } else { 1 })
@@ -116,8 +113,8 @@ impl Parts {
         let mut all: Vec<(u32, i64)> = edge.iter().map(net).collect();
         all.sort_unstable();
         let parts = all.chunk_by(|a, b| a.0 == b.0);
-        let uneven = parts.filter(|part| part.iter().map(|p| p.1).sum::<i64>() != 0);
-        uneven.map(|part| part[0].0).collect()
+        let sums = parts.map(|part| (part[0].0, part.iter().map(|p| p.1).sum::<i64>()));
+        sums.filter(|&(_, sum)| sum != 0).collect()
     }
 
     /// Marks parts as not closed that have faulty edges, other than those of small holes.
@@ -130,7 +127,7 @@ impl Parts {
         let mut boundary = vec![0.0; self.closed.len()];
         for (lower, edge) in table.edges() {
             let ends = [lower, edge[0].upper].map(|i| mesh.vertices[i as usize]);
-            for shell in self.unbalanced(edge) {
+            for (shell, _) in self.uneven(edge) {
                 boundary[shell as usize] += ends[0].distance(ends[1]);
             }
         }

@@ -47,6 +47,11 @@ fn faces_with_different_diagonals_between_two_boxes_do_no_harm() {
     let mut second = cube(DVec3::X);
     second.triangles.retain(|t| *t != [0, 4, 6] && *t != [0, 6, 2]);
     second.triangles.extend([[0, 4, 2], [4, 6, 2]]);
+    for second in [second.clone(), inside_out(&second)] {
+        let found = joined(&cube(DVec3::ZERO), &second).oriented();
+        assert_eq!(found.shells, 2);
+        assert!((volume(&found.mesh) - 2.0).abs() < 1e-12);
+    }
     let mesh = joined(&cube(DVec3::ZERO), &second);
     assert!(mesh.watertightness().is_closed() && mesh.watertightness().non_manifold > 0);
     let found = mesh.without_duplicates();
