@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use tumble_io::mesh::{Format, parse_mesh};
+use tumble_io::mesh::{Format, Repair, parse_mesh, prepare};
 
 fuzz_target!(|bytes: &[u8]| {
     match parse_mesh(Format::Ply, bytes, None, None) {
@@ -11,6 +11,7 @@ fuzz_target!(|bytes: &[u8]| {
             assert!(count > 0);
             assert!(file.mesh.vertices.iter().all(|vertex| vertex.is_finite()));
             assert!(file.mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < count));
+            let _ = prepare(&file.mesh, Repair::Close);
         }
         Err(error) => assert!(!error.to_string().is_empty()),
     }

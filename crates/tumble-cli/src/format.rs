@@ -6,6 +6,50 @@ pub fn columns(rows: &[(&str, String)]) -> String {
     rows.iter().map(|(name, value)| format!("  {name:width$}  {value}\n")).collect()
 }
 
+/// The most columns of a line of [`wrapped_columns`].
+const WIDTH: usize = 100;
+
+/// As [`columns`], with long values wrapped at spaces.
+pub fn wrapped_columns(rows: &[(&str, String)]) -> String {
+    let indent = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0) + 4;
+    let mut lines: Vec<(&str, String)> = Vec::new();
+    for (name, value) in rows {
+        let mut line = String::new();
+        let mut name = *name;
+        for word in unbreakable(value) {
+            if !line.is_empty() && indent + line.chars().count() + 1 + word.chars().count() > WIDTH
+            {
+                lines.push((std::mem::take(&mut name), std::mem::take(&mut line)));
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(&word);
+        }
+        lines.push((name, line));
+    }
+    columns(&lines)
+}
+
+/// The words of a text, with vectors and settings such as `scale = 2` in one piece.
+fn unbreakable(text: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match words.last_mut() {
+            Some(last)
+                if last.matches('(').count() > last.matches(')').count()
+                    || word == "="
+                    || last.ends_with('=') =>
+            {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => words.push(word.to_owned()),
+        }
+    }
+    words
+}
+
 /// A number with four to six significant digits, and with an exponent below 0.001 and from a million on.
 pub fn number(x: f64) -> String {
     let size = x.abs();
@@ -40,6 +84,18 @@ pub fn count(n: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_values_are_wrapped_at_spaces() {
+        let settings = "set scale = 0.001 or (1, 2, 3) ".repeat(9);
+        for line in wrapped_columns(&[("name", settings)]).lines() {
+            assert!(line.matches('(').count() == line.matches(')').count() && !line.ends_with('='));
+        }
+        let text = wrapped_columns(&[("name", "word ".repeat(40)), ("b", "short".to_owned())]);
+        assert!(text.lines().all(|line| line.len() <= WIDTH));
+        assert!(text.starts_with("  name  word word") && text.contains("\n        word"));
+        assert_eq!(text.matches("word").count(), 40);
+    }
 
     #[test]
     fn numbers_are_short_and_counts_are_grouped() {

@@ -1,13 +1,17 @@
-//! `tumble info`: prints the properties of a mesh.
+//! `tumble info`: prints the properties of a mesh, and what it will work as.
 
 use std::path::PathBuf;
 
 use clap::Args;
-use tumble::{DVec3, MassModel, Sampling, Shape};
-use tumble_io::mesh::{MeshFile, read_mesh};
+use tumble::{DVec3, MassModel, Mesh, Sampling, Shape, Watertightness};
+use tumble_io::mesh::{MeshFile, Prepared, Repair, Weld, WeldReport, prepare, read_mesh};
 
 use crate::failure::{Failure, print};
-use crate::format::{columns, count, number};
+use crate::format::{count, number, wrapped_columns};
+use crate::mesh_verdict::{Verdicts, plural};
+
+/// The most holes, and the most edges of each kind, that are listed.
+const MAX_LISTED: usize = 3;
 
 #[derive(Args)]
 #[command(after_help = "Mass, centre and moments are those of equal particles at the vertices.")]
@@ -20,9 +24,38 @@ pub struct InfoArgs {
     /// Mass of one particle (kg)
     #[arg(long, default_value_t = 1.0, value_name = "KG")]
     particle_mass: f64,
-    /// Whether to merge vertices with the same coordinates [default: true for .stl, .gltf and .glb]
-    #[arg(long, value_name = "true|false")]
-    weld: Option<bool>,
+    /// Whether to merge equal vertices, and those at open edges within a tolerance: true, false, or that
+    /// length in the unit of the file [default: true for .stl, .gltf and .glb]
+    #[arg(long, value_name = "true|false|LENGTH", value_parser = parse_weld, allow_negative_numbers = true)]
+    weld: Option<Weld>,
+    /// What to do to the triangles: none, or close (closes holes)
+    #[arg(long, default_value = "none", value_name = "none|close", value_parser = parse_repair)]
+    repair: Repair,
+}
+
+fn parse_weld(text: &str) -> Result<Weld, String> {
+    match text {
+        "true" => Ok(Weld::Auto),
+        "false" => Ok(Weld::Never),
+        _ => match text.parse::<f64>() {
+            Ok(length) if length >= 0.0 && length.is_finite() => Ok(Weld::Within(length)),
+            _ => Err("it must be true, false, or a length of 0 or more".to_owned()),
+        },
+    }
+}
+
+fn parse_repair(text: &str) -> Result<Repair, String> {
+    Repair::from_name(text).ok_or_else(|| "it must be none or close".to_owned())
+}
+
+/// A mesh as a body would have it.
+struct Report<'a> {
+    file: &'a MeshFile,
+    prepared: &'a Prepared,
+    shape: &'a Shape,
+    args: &'a InfoArgs,
+    /// The bounding box of all vertices (m).
+    bounds: [DVec3; 2],
 }
 
 pub fn info(args: &InfoArgs) -> Result<(), Failure> {
@@ -31,67 +64,182 @@ pub fn info(args: &InfoArgs) -> Result<(), Failure> {
             return Err(Failure::call(&format!("{name} must be above 0, but is {value}")));
         }
     }
-    let mut file = read_mesh(&args.mesh, args.weld).map_err(|error| Failure::call(&error))?;
-    for vertex in &mut file.mesh.vertices {
+    let file = read_mesh(&args.mesh, args.weld).map_err(|error| Failure::call(&error))?;
+    let mut prepared = prepare(&file.mesh, args.repair).map_err(|error| {
+        Failure::call(&format!("{}, in the unit of the file: {error}", args.mesh.display()))
+    })?;
+    for vertex in &mut prepared.mesh.vertices {
         *vertex *= args.scale;
     }
-    let shape = Shape::from_mesh(&file.mesh, Sampling::Vertices, MassModel::Particles)
+    let shape = Shape::from_mesh(&prepared.mesh, Sampling::Vertices, MassModel::Particles)
         .map_err(|error| Failure::call(&error))?;
-    print(&columns(&rows(&file, &shape, args.particle_mass)))
+    let infinite = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let vertices = prepared.mesh.vertices.iter();
+    let bounds = vertices.fold(infinite, |[low, high], &v| [low.min(v), high.max(v)]);
+    let report = Report { file: &file, prepared: &prepared, shape: &shape, args, bounds };
+    print(&wrapped_columns(&report.rows()))
 }
 
-fn rows(file: &MeshFile, shape: &Shape, particle_mass: f64) -> Vec<(&'static str, String)> {
-    let mesh = &file.mesh;
-    let mass = particle_mass * shape.moments().count;
-    let infinite = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (min, max) = mesh.vertices.iter().fold(infinite, |(min, max), &v| (min.min(v), max.max(v)));
-    let axes = shape.principal().axes;
-    let moments = shape.principal().moments * mass;
-    let objects = if file.object_count == 1 { "object" } else { "objects" };
-    let mut rows = vec![
-        ("file", format!("{}, {} {objects}", file.format, file.object_count)),
-        ("particles", particles(file)),
-        ("triangles", count(mesh.triangles.len() as u64)),
-        ("mass", format!("{} kg ({} kg per particle)", number(mass), number(particle_mass))),
-        ("centre of mass", format!("{} m", vector(shape.centre()))),
-        ("size", format!("{} m", vector(max - min))),
-        ("bounds", format!("{} to {} m", vector(min), vector(max))),
-        ("bounding radius", format!("{} m about the centre of mass", number(shape.radius()))),
-        ("principal moments", format!("{} kg·m²", vector(moments))),
-        (
-            "principal axes",
-            format!("{}, {}, {}", vector(axes.x_axis), vector(axes.y_axis), vector(axes.z_axis)),
-        ),
-        ("rotational axes", shape.principal().rotation_count().to_string()),
-    ];
-    match mesh.solid_integrals() {
-        Ok(solid) => {
-            rows.push(("watertight", "yes".to_owned()));
+type Row = (&'static str, String);
+
+impl Report<'_> {
+    fn rows(&self) -> Vec<Row> {
+        let mut rows = self.of_file();
+        rows.extend(self.of_particles());
+        rows.extend(self.of_triangles());
+        rows.push(("sha256", self.file.sha256.clone()));
+        let size = self.bounds[1] - self.bounds[0];
+        let verdicts = Verdicts {
+            file: self.file,
+            mesh: &self.prepared.mesh,
+            one_sided: self.prepared.orientation.one_sided > 0,
+            scale: self.args.scale,
+            size: size.max_element(),
+        };
+        rows.extend(verdicts.rows(self.shape));
+        rows
+    }
+
+    fn of_file(&self) -> Vec<Row> {
+        let (file, mesh) = (self.file, &self.prepared.mesh);
+        let objects = plural(file.object_count, "object", "objects");
+        let mut rows = vec![("file", format!("{}, {objects}", file.format))];
+        if let Some(unit) = file.header_unit {
+            let text =
+                format!("the header names {}; numbers are taken as metres times scale", unit.name);
+            rows.push(("unit", text));
+        }
+        rows.push(("particles", particles(file)));
+        rows.extend(file.weld.as_ref().map(|weld| ("weld", merged(weld))));
+        rows.push(("triangles", count(mesh.triangles.len() as u64)));
+        let notes = self.prepared.notes().into_iter().chain(self.prepared.repair_note());
+        rows.extend(notes.map(|note| ("", note)));
+        rows
+    }
+
+    fn of_particles(&self) -> Vec<Row> {
+        let (shape, particle_mass) = (self.shape, self.args.particle_mass);
+        let mass = particle_mass * shape.moments().count;
+        let axes = shape.principal().axes;
+        let moments = shape.principal().moments * mass;
+        let [low, high] = self.bounds;
+        vec![
+            ("mass", format!("{} kg ({} kg per particle)", number(mass), number(particle_mass))),
+            ("centre of mass", format!("{} m", self.place(shape.centre()))),
+            ("size", format!("{} m", self.place(high - low))),
+            ("bounds", format!("{} to {} m", self.place(low), self.place(high))),
+            ("bounding radius", format!("{} m about the centre of mass", number(shape.radius()))),
+            (
+                "principal moments",
+                format!("{} kg·m²", vector(moments, moments.abs().max_element())),
+            ),
+            (
+                "principal axes",
+                [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| vector(axis, 1.0)).join(", "),
+            ),
+            ("rotational axes", shape.principal().rotation_count().to_string()),
+        ]
+    }
+
+    fn of_triangles(&self) -> Vec<Row> {
+        let mesh = &self.prepared.mesh;
+        let mut rows = Vec::new();
+        let edges = mesh.watertightness();
+        rows.push(("watertight", watertight(&edges)));
+        if edges.non_manifold > 0 {
+            rows.extend(self.non_manifold(mesh));
+        }
+        if !edges.is_closed() {
+            rows.extend(self.holes(mesh));
+        }
+        if let Some(place) = self.prepared.orientation.first_one_sided {
+            let count = plural(self.prepared.orientation.one_sided, "edge", "edges");
+            let at = self.place(place * self.args.scale);
+            let text =
+                format!("no winding is consistent at {count}, as on a Möbius strip: at {at}");
+            rows.push(("one-sided", text));
+        }
+        if let Ok(solid) = mesh.solid_integrals() {
             rows.push(("volume", format!("{} m³", number(solid.measure))));
         }
-        Err(why) => rows.push(("watertight", format!("no: {why}"))),
+        if let Ok(shell) = mesh.shell_integrals() {
+            rows.push(("surface area", format!("{} m²", number(shell.measure))));
+        }
+        rows
     }
-    if let Ok(shell) = mesh.shell_integrals() {
-        rows.push(("surface", format!("{} m²", number(shell.measure))));
+
+    fn non_manifold(&self, mesh: &Mesh) -> Option<Row> {
+        let edges = mesh.non_manifold_edges();
+        let first: Vec<String> = edges.iter().take(MAX_LISTED).map(|&p| self.place(p)).collect();
+        let more = if edges.len() > first.len() { ", …" } else { "" };
+        let count = plural(edges.len(), "edge", "edges");
+        let text = format!("more than two triangles at {count}: at {}{more}", first.join(", "));
+        (!first.is_empty()).then_some(("non-manifold", text))
     }
-    rows.push(("sha256", file.sha256.clone()));
-    rows
+
+    fn holes(&self, mesh: &Mesh) -> Vec<Row> {
+        let holes = mesh.holes();
+        if holes.is_empty() {
+            return Vec::new();
+        }
+        let mut rows = vec![("holes", count(holes.len() as u64))];
+        rows.extend(holes.iter().take(MAX_LISTED).map(|hole| {
+            let edges = plural(hole.vertices.len(), "edge", "edges");
+            let (at, length) = (self.place(hole.centre), number(hole.perimeter));
+            let planar = if hole.is_planar { "planar" } else { "not planar" };
+            ("", format!("at {at} m: {edges}, {length} m around, {planar}"))
+        }));
+        if holes.len() > MAX_LISTED {
+            rows.push(("", "…".to_owned()));
+        }
+        rows
+    }
+
+    /// A point or a length of the mesh, without the rounding noise of its coordinates.
+    fn place(&self, place: DVec3) -> String {
+        let [low, high] = self.bounds;
+        vector(place, low.abs().max(high.abs()).max_element())
+    }
+}
+
+fn watertight(edges: &Watertightness) -> String {
+    if edges.triangles == 0 {
+        return "no: there are no triangles".to_owned();
+    }
+    if edges.is_closed() {
+        return "yes".to_owned();
+    }
+    let open = (edges.open_edges > 0).then(|| plural(edges.open_edges, "open edge", "open edges"));
+    let wound = (edges.wrongly_wound > 0)
+        .then(|| plural(edges.wrongly_wound, "wrongly wound edge", "wrongly wound edges"));
+    format!("no: {}", open.into_iter().chain(wound).collect::<Vec<_>>().join(", "))
 }
 
 fn particles(file: &MeshFile) -> String {
-    let kept = file.mesh.vertices.len();
-    let merged = file.file_vertex_count - kept;
-    let all = count(kept as u64);
-    if merged > 0 {
-        {
-            let duplicates = if merged == 1 { "duplicate" } else { "duplicates" };
-            format!("{all} ({} {duplicates} merged)", count(merged as u64))
-        }
-    } else {
-        all
+    let (kept, all) = (file.mesh.vertices.len(), file.file_vertex_count);
+    if kept == all {
+        return count(kept as u64);
     }
+    format!("{} of {} vertices", count(kept as u64), count(all as u64))
 }
 
-fn vector(v: DVec3) -> String {
-    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
+/// What was merged.
+fn merged(weld: &WeldReport) -> String {
+    let mut text = format!(
+        "{} equal to others; {} within {} of others, at open edges",
+        plural(weld.equal, "vertex", "vertices"),
+        count(weld.near as u64),
+        number(weld.tolerance)
+    );
+    if weld.collapsed > 0 {
+        let triangles = plural(weld.collapsed, "triangle", "triangles");
+        text += &format!("; {triangles} of no area left out");
+    }
+    text
+}
+
+/// A vector among others of this size; what is rounding beside that is 0.
+fn vector(v: DVec3, size: f64) -> String {
+    let [x, y, z] = v.to_array().map(|x| number(if x.abs() < 1e-9 * size { 0.0 } else { x }));
+    format!("({x}, {y}, {z})")
 }

@@ -16,6 +16,7 @@ mod failure;
 mod format;
 mod info;
 mod interrupt;
+mod mesh_verdict;
 mod report;
 mod resume;
 mod run;

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 use peak_alloc::PeakAlloc;
-use tumble_io::mesh::{Format, parse_mesh};
+use tumble_io::mesh::{Format, Weld, parse_mesh};
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -55,7 +55,7 @@ fn memory_is_proportional_to_file_size() {
         ("soup", Format::Stl, [b"solid\n".to_vec(), facet.repeat(200_000)].concat()),
     ];
     for (name, format, bytes) in cases {
-        for weld in [false, true] {
+        for weld in [Weld::Never, Weld::Auto] {
             let before = MEMORY.current_usage();
             MEMORY.reset_peak_usage();
             let _ = parse_mesh(format, &bytes, None, Some(weld));

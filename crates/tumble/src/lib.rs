@@ -87,10 +87,10 @@ pub use pair_material::{PairDamping, PairMaterial};
 pub use restore::StateError;
 pub use scratch::Scratch;
 pub use shape::{
-    AreaError, EdgeFault, FaultyEdge, Integrals, MassModel, MassProperties, Mesh, MeshError,
-    ParticleMoments, Particles, Primitive, PrimitiveError, PrincipalAxes, SampleError, Sampling,
-    Shape, ShapeError, ShellError, SolidError, SphereUnionError, Watertightness,
-    sphere_union_integrals,
+    AreaError, Closed, Deduplicated, EdgeFault, FaultyEdge, Hole, HoleError, HoleFault, Integrals,
+    MassModel, MassProperties, Mesh, MeshError, Oriented, ParticleMoments, Particles, Primitive,
+    PrimitiveError, PrincipalAxes, SampleError, Sampling, Shape, ShapeError, ShellError,
+    SolidError, SphereUnionError, Watertightness, Welded, sphere_union_integrals,
 };
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::MouseSpring;

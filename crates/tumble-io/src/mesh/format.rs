@@ -28,7 +28,7 @@ impl Format {
         }
     }
 
-    /// Whether exact duplicates are welded by default.
+    /// Whether vertices are welded by default.
     pub fn welds(self) -> bool {
         matches!(self, Self::Stl | Self::Gltf)
     }

@@ -3,10 +3,10 @@
 //! The vertices of a mesh are the particles of a body, so each format states which vertices it keeps:
 //!
 //! - **OBJ and PLY keep all vertices of the file** in its order, including those that no face uses.
-//! - **STL and glTF weld exact duplicates**, because these formats repeat a vertex for each triangle or seam;
-//!   see [`weld`].
+//! - **STL and glTF weld**, because these formats repeat a vertex for each triangle or seam: equal vertices
+//!   are one, and so are vertices at open edges that differ by rounding; see [`Weld`].
 //!
-//! `weld: Some(true)` or `Some(false)` overrides that.
+//! The argument `weld` overrides that. [`prepare`] then puts the triangles right.
 //!
 //! ```no_run
 //! let file = tumble_io::mesh::read_mesh("cat.obj".as_ref(), None)?;
@@ -15,7 +15,7 @@
 //! ```
 //!
 //! Data flows one way: `file` (checks the path, reads the bytes) → `format` → one reader per format (`obj`,
-//! `stl`, `ply`, `gltf`; with `text` and `polygon`) → `parsed` → [`parse_mesh`], which checks and welds.
+//! `stl`, `ply`, `gltf`; with `text` and `polygon`) → `parsed` → [`parse_mesh`], which checks and welds (`weld`, `unit`).
 //! Every reader reports problems as [`ReadError`] (`error`).
 //!
 //! To add a format: add a variant to [`Format`] with its extensions, write a reader file with a function
@@ -34,18 +34,25 @@ mod obj;
 mod parsed;
 mod ply;
 mod polygon;
+mod prepare;
 mod stl;
 mod text;
+mod unit;
+mod weld;
 
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
-use tumble::Mesh;
+use tumble::{Mesh, Welded};
 
 pub use error::{Place, ReadError};
 pub use format::Format;
+pub use prepare::{Prepared, Repair, prepare};
+pub use unit::LengthUnit;
+pub use weld::{Weld, WeldReport};
+
+/// The most bytes of a file in which the name of a text STL is looked for.
+const HEADER: usize = 500;
 
 /// A mesh, with information about its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,8 +72,10 @@ pub struct MeshFile {
     pub face_count: usize,
     /// The side files of a glTF, relative to its folder.
     pub side_files: Vec<PathBuf>,
-    /// Whether exact duplicates were welded.
-    pub welded: bool,
+    /// What was merged; `None` if each vertex of the file stayed one.
+    pub weld: Option<WeldReport>,
+    /// The unit of length that the header of an STL names. The numbers are not converted.
+    pub header_unit: Option<LengthUnit>,
 }
 
 /// Reads a mesh file; the extension determines the format. `weld` overrides the format's default (see the
@@ -75,7 +84,7 @@ pub struct MeshFile {
 /// # Errors
 /// [`ReadError`] if the path is not a regular file of a known extension of at most 4 GiB, or if its content is not a
 /// mesh.
-pub fn read_mesh(path: &Path, weld: Option<bool>) -> Result<MeshFile, ReadError> {
+pub fn read_mesh(path: &Path, weld: Option<Weld>) -> Result<MeshFile, ReadError> {
     let read = || {
         file::check_exists(path)?;
         let format = file::format_of(path)?;
@@ -93,7 +102,7 @@ pub fn parse_mesh(
     format: Format,
     bytes: &[u8],
     folder: Option<&Path>,
-    weld: Option<bool>,
+    weld: Option<Weld>,
 ) -> Result<MeshFile, ReadError> {
     if bytes.is_empty() {
         return Err(ReadError::new(None, format!("the file is empty; {format} is expected")));
@@ -114,48 +123,37 @@ pub fn parse_mesh(
     let file_vertex_count = parsed.vertices.len();
     let mesh = Mesh::new(parsed.vertices, parsed.triangles)
         .map_err(|error| ReadError::new(None, error.to_string()))?;
-    let welded = weld.unwrap_or(format.welds());
+    let (mesh, weld) = match weld.unwrap_or(format.welds().into()) {
+        Weld::Never => (mesh, None),
+        Weld::Auto => merged(mesh.welded(None)),
+        Weld::Within(tolerance) => merged(mesh.welded(Some(tolerance))),
+    };
     Ok(MeshFile {
-        mesh: if welded { self::weld(mesh) } else { mesh },
+        mesh,
         format,
         sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
         object_count: parsed.object_count,
         file_vertex_count,
         face_count: parsed.face_count,
         side_files: parsed.side_files,
-        welded,
+        weld,
+        header_unit: header_unit(format, bytes),
     })
 }
 
-/// Merges vertices that are exactly equal (0 and -0 are), in the order of their first occurrence.
-///
-/// Triangles are renumbered. A triangle with the same vertex twice has no area and is dropped. There is no tolerance: vertices that
-/// differ in the last bit stay separate.
-pub fn weld(mesh: Mesh) -> Mesh {
-    let mut first_of: HashMap<[u64; 3], u32> = HashMap::new();
-    let mut vertices = Vec::new();
-    // the new index of each vertex
-    let renumbered: Vec<u32> = mesh
-        .vertices
-        .iter()
-        .map(|&vertex| {
-            // adding 0 turns -0 into 0
-            let key = (vertex + 0.0).to_array().map(f64::to_bits);
-            match first_of.entry(key) {
-                Entry::Occupied(known) => *known.get(),
-                Entry::Vacant(new) => {
-                    vertices.push(vertex);
-                    *new.insert(vertices.len() as u32 - 1)
-                }
-            }
-        })
-        .collect();
-    // drop triangles without area
-    let triangles = mesh
-        .triangles
-        .iter()
-        .map(|triangle| triangle.map(|i| renumbered[i as usize]))
-        .filter(|[a, b, c]| a != b && b != c && c != a)
-        .collect();
-    Mesh { vertices, triangles }
+fn merged(found: Welded) -> (Mesh, Option<WeldReport>) {
+    let report = WeldReport::from(&found);
+    (found.mesh, Some(report))
+}
+
+/// The unit that the header of an STL names: the first line of a text, the first bytes of a binary file.
+fn header_unit(format: Format, bytes: &[u8]) -> Option<LengthUnit> {
+    let header = &bytes[..bytes.len().min(HEADER)];
+    let line = header.split(|&byte| byte == b'\n').next().unwrap_or_default();
+    let is_text = format == Format::Stl && line.len() < header.len() && line.is_ascii();
+    match format {
+        Format::Stl if is_text => unit::in_header(line),
+        Format::Stl => unit::in_header(&bytes[..bytes.len().min(80)]),
+        _ => None,
+    }
 }

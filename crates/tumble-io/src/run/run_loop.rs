@@ -147,20 +147,27 @@ impl<'a> RunLoop<'a> {
 
 /// Notes on properties of the scene that the user may not expect.
 fn notes(scene: &Scene) -> Vec<String> {
+    let mut notes = scene.mesh_notes();
+    notes.extend(surface_note(scene));
+    notes
+}
+
+/// Says which bodies have no contact surface, if others are there.
+fn surface_note(scene: &Scene) -> Option<String> {
     let without = scene.without_surface();
-    let Some(first) = without.first() else { return Vec::new() };
+    let first = without.first()?;
     if without.len() == scene.bodies.len() {
-        return vec!["the bodies do not touch each other: none has a `surface`".to_owned()];
+        return Some("the bodies do not touch each other: none has a `surface`".to_owned());
     }
     let others = match without.len() - 1 {
         0 => String::new(),
         count => format!(" and {count} more"),
     };
     let name = &first.name;
-    vec![format!(
+    Some(format!(
         "body \"{name}\"{others} touches other bodies with its particles alone, which may pass beside them: \
          give it a `surface`"
-    )]
+    ))
 }
 
 /// Copies a state into `copy`, reusing its memory.

@@ -10,6 +10,7 @@ use super::motion::motion;
 use super::reader::{Range, Reader};
 use super::shape::{SHAPE_KEYS, shape_scene};
 use super::surface::surface;
+use crate::mesh::{Repair, Weld};
 
 /// Keys that give the mass; only one may be given.
 pub const MASS_KEYS: [&str; 3] = ["particle_mass", "mass", "density"];
@@ -66,11 +67,19 @@ pub fn body(reader: Reader, index: usize) -> BodyScene {
 fn geometry(reader: &Reader) -> Option<Geometry> {
     match reader.only_one(&["mesh", "shape", "particles"]) {
         Some("mesh") => {
-            let weld = reader.boolean("weld");
+            let weld = reader.switch_or_number(
+                "weld",
+                Range::NotNegative,
+                "a length in the unit of the file",
+            );
+            let weld = weld.map(|value| value.map_or_else(Weld::Within, Weld::from));
+            let repair = reader.choice("mesh_repair", &Repair::NAMES).and_then(Repair::from_name);
+            let repair = repair.unwrap_or_default();
             let sha256 = reader.string("mesh_sha256").unwrap_or_default().to_lowercase();
             let origin = reader.string("mesh_origin").map(PathBuf::from);
             let path = PathBuf::from(reader.string("mesh")?);
-            Some(Geometry::Mesh(MeshScene { path, origin, sha256, weld, ..MeshScene::default() }))
+            let mesh = MeshScene { path, origin, sha256, weld, repair, ..MeshScene::default() };
+            Some(Geometry::Mesh(mesh))
         }
         Some("shape") => {
             let shape = shape_scene(reader).map(Geometry::Shape);
@@ -83,7 +92,7 @@ fn geometry(reader: &Reader) -> Option<Geometry> {
         Some(_) => reader.points("particles").map(Geometry::Particles),
         None => {
             reader.mark_known(&SHAPE_KEYS);
-            reader.mark_known(&["weld", "mesh_sha256", "mesh_origin"]);
+            reader.mark_known(&["weld", "mesh_repair", "mesh_sha256", "mesh_origin"]);
             reader.problem("", "needs one of `mesh = \"FILE\"`, `shape = \"NAME\"` or `particles = [[x, y, z], …]`");
             None
         }

@@ -7,6 +7,8 @@ use tumble::{
     Primitive, Sampling, SolverSettings, Surface, WallBox, WallPlane,
 };
 
+use crate::mesh::{LengthUnit, Repair, Weld};
+
 /// The names of the mass models in scene files.
 pub const MASS_MODELS: [(&str, MassModel); 3] =
     [("particles", MassModel::Particles), ("shell", MassModel::Shell), ("solid", MassModel::Solid)];
@@ -99,6 +101,25 @@ pub struct BodyScene {
     pub copies: Option<Copies>,
 }
 
+impl BodyScene {
+    fn mesh_notes(&self) -> Vec<String> {
+        let Geometry::Mesh(mesh) = &self.geometry else { return Vec::new() };
+        let uses_triangles = self.mass_model != MassModel::Particles
+            || self.surface == Surface::Mesh
+            || self.sampling != Sampling::Vertices
+            || matches!(self.mass, MassScene::Density(_));
+        let of_triangles = mesh.notes.triangles.iter().filter(|_| uses_triangles);
+        let of_unit = mesh.notes.unit.filter(|unit| (self.scale / unit.metres - 1.0).abs() > 1e-6);
+        let of_unit = of_unit.map(|unit| {
+            let LengthUnit { name, metres } = unit;
+            format!("its header names {name}, but its numbers are taken as metres: for {name} set scale = {metres}")
+        });
+        let file = mesh.path.file_name().unwrap_or_default().to_string_lossy();
+        let all = mesh.notes.points.iter().chain(of_triangles).cloned().chain(of_unit);
+        all.map(|note| format!("mesh {file}: {note}")).collect()
+    }
+}
+
 /// Where the points of a body come from.
 #[derive(Clone, Debug)]
 pub enum Geometry {
@@ -123,8 +144,23 @@ pub struct MeshScene {
     pub side_files: Vec<PathBuf>,
     /// SHA-256 of the file, lower-case hexadecimal, known once it is read.
     pub sha256: String,
-    /// Whether exact duplicates among its vertices are merged; `None`: the default of the format.
-    pub weld: Option<bool>,
+    /// Which of its vertices are merged; `None`: the default of the format.
+    pub weld: Option<Weld>,
+    /// What is done to its triangles on request.
+    pub repair: Repair,
+    /// What was done to it and the user may not expect; known once the mesh is loaded.
+    pub notes: MeshNotes,
+}
+
+/// What was done to a mesh, one sentence each.
+#[derive(Clone, Debug, Default)]
+pub struct MeshNotes {
+    /// To its vertices and holes.
+    pub points: Vec<String>,
+    /// To its triangles, which matters only if they do.
+    pub triangles: Vec<String>,
+    /// The unit that the file names.
+    pub unit: Option<LengthUnit>,
 }
 
 /// A built-in shape with its keys.
@@ -237,6 +273,19 @@ impl Scene {
             self.bodies.iter().map(|b| b.copies.as_ref().map_or(1, Copies::total)).sum();
         let without = self.bodies.iter().filter(|body| body.surface == Surface::None);
         if count > 1 { without.collect() } else { Vec::new() }
+    }
+
+    /// What was done to meshes and the user may not expect, one sentence each.
+    pub fn mesh_notes(&self) -> Vec<String> {
+        let mut notes: Vec<String> = Vec::new();
+        for body in &self.bodies {
+            for note in body.mesh_notes() {
+                if !notes.contains(&note) {
+                    notes.push(note);
+                }
+            }
+        }
+        notes
     }
 
     /// Number of steps of the run: the integer nearest to duration/dt.

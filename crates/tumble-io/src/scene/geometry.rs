@@ -40,7 +40,10 @@ pub fn build_shape(body: &mut BodyScene, folder: &Path) -> Result<ShapeAndMass, 
     } else {
         Shape::from_mesh(&mesh, body.sampling, body.mass_model)
     };
-    let shape = shape.map_err(|cause| error(key_of_error(body, &cause), cause))?;
+    let shape = shape.map_err(|cause| match cause {
+        ShapeError::Open(_) => error("mass_model", format!("{cause}{}", hint(body))),
+        _ => error(key_of_error(body, &cause), cause),
+    })?;
     let mass = mass(body, &mesh, &shape)?;
     Ok(ShapeAndMass { shape: Arc::new(shape), mass })
 }
@@ -84,11 +87,17 @@ pub fn load_points(geometry: &mut Geometry, folder: &Path) -> Result<Mesh, Geome
     }
 }
 
+/// Where to learn more about the mesh file of a body, for messages.
+pub fn hint(body: &BodyScene) -> String {
+    let Geometry::Mesh(mesh) = &body.geometry else { return String::new() };
+    format!("; `tumble info {}` says where, and which key helps", mesh.path.display())
+}
+
 /// The key that causes a shape error.
 fn key_of_error(body: &BodyScene, error: &ShapeError) -> &'static str {
     match error {
         ShapeError::Sample(_) => "sampling",
-        ShapeError::Open(_) | ShapeError::Shell(_) => "mass_model",
+        ShapeError::Open(_) | ShapeError::Shell(_) | ShapeError::Impossible { .. } => "mass_model",
         ShapeError::TooLarge => "scale",
         _ => match body.geometry {
             Geometry::Mesh(_) => "mesh",
@@ -106,7 +115,9 @@ fn mass(body: &BodyScene, mesh: &Mesh, shape: &Shape) -> Result<f64, GeometryErr
             let measure = if body.mass_model == MassModel::Shell {
                 mesh.shell_integrals().map_err(|cause| error("density", cause))?.measure
             } else {
-                mesh.solid_integrals().map_err(|cause| error("density", cause))?.measure
+                let solid = mesh.solid_integrals();
+                let message = |cause| error("density", format!("{cause}{}", hint(body)));
+                solid.map_err(message)?.measure
             };
             Ok(density * measure)
         }

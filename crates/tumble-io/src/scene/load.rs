@@ -199,6 +199,13 @@ fn world(
         return None;
     }
     let owners = owners(scene);
+    let hint = |error: &BuildError| match error {
+        BuildError::Surface { body, .. } => {
+            let index = owners.get(body);
+            index.map(|&index| geometry::hint(&scene.bodies[index])).unwrap_or_default()
+        }
+        _ => String::new(),
+    };
     let world = builder.build().map_err(|errors| {
         let mut reported = BTreeSet::new();
         for error in errors.0 {
@@ -213,7 +220,7 @@ fn world(
             let (index, key) = origin(&error, &owners, &readers);
             // report only one of the copies of a body
             if reported.insert((index, key)) {
-                report(index, key, format!("cannot work: {error}"));
+                report(index, key, format!("cannot work: {error}{}", hint(&error)));
             }
         }
     });

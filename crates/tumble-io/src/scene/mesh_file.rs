@@ -8,9 +8,10 @@ use std::path::{Component, Path, PathBuf};
 
 use tumble::Mesh;
 
-use super::description::MeshScene;
+use super::description::{MeshNotes, MeshScene};
 use super::geometry_error::{GeometryError, error};
-use crate::mesh::{MeshFile, ReadError, read_mesh};
+use crate::counted::counted;
+use crate::mesh::{MeshFile, ReadError, prepare, read_mesh};
 
 /// The folder in the folder of a run that holds copies of meshes.
 pub(crate) const MESHES_FOLDER: &str = "meshes";
@@ -34,14 +35,39 @@ pub fn load(mesh: &mut MeshScene, folder: &Path) -> Result<Mesh, GeometryError> 
             Ok(file) => {
                 mesh.tree = tree(mesh, folder);
                 mesh.path = canonical(place);
-                mesh.side_files = file.side_files;
-                mesh.sha256 = file.sha256;
-                return Ok(file.mesh);
+                mesh.side_files.clone_from(&file.side_files);
+                mesh.sha256.clone_from(&file.sha256);
+                return put_right(mesh, &file);
             }
             Err(miss) => misses.push(miss),
         }
     }
     Err(not_found(mesh, &places, misses))
+}
+
+/// The mesh of a file with its triangles put right; says what was done.
+fn put_right(mesh: &mut MeshScene, file: &MeshFile) -> Result<Mesh, GeometryError> {
+    let prepared = prepare(&file.mesh, mesh.repair).map_err(|cause| {
+        let path = mesh.path.display();
+        error("mesh_repair", format!("cannot be done for {path}, in the unit of the file: {cause}"))
+    })?;
+    let of_weld = file.weld.filter(|weld| weld.near > 0).map(|weld| {
+        let vertices = counted(weld.near, "vertex", "vertices");
+        let collapsed = match weld.collapsed {
+            0 => String::new(),
+            n => format!("; {} of no area left out", counted(n, "triangle", "triangles")),
+        };
+        format!(
+            "{vertices} at open edges within {:.2e} of others: merged{collapsed}",
+            weld.tolerance
+        )
+    });
+    mesh.notes = MeshNotes {
+        points: of_weld.into_iter().chain(prepared.repair_note()).collect(),
+        triangles: prepared.notes(),
+        unit: file.header_unit,
+    };
+    Ok(prepared.mesh)
 }
 
 /// The paths at which the mesh may be, in the order in which they are tried.

@@ -39,8 +39,8 @@ mod write;
 
 pub use builtin::{BUILTIN, Builtin, builtin};
 pub use description::{
-    BodyScene, BoxScene, Copies, Geometry, MassScene, MeshScene, MotionScene, OutputScene, Scene,
-    WallScene,
+    BodyScene, BoxScene, Copies, Geometry, MassScene, MeshNotes, MeshScene, MotionScene,
+    OutputScene, Scene, WallScene,
 };
 pub use load::{LoadOptions, Loaded, load_builtin, load_file, load_text};
 pub(crate) use load::{load_recorded, load_recorded_file};

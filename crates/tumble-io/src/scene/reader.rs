@@ -197,14 +197,30 @@ impl<'a> Reader<'a> {
         (points.len() == items.len()).then_some(points)
     }
 
-    /// A boolean.
-    pub fn boolean(&self, key: &'static str) -> Option<bool> {
+    /// A boolean (`Ok`) or a number in a range (`Err`), which `what` describes.
+    pub fn switch_or_number(
+        &self,
+        key: &'static str,
+        range: Range,
+        what: &str,
+    ) -> Option<Result<bool, f64>> {
         let node = self.get(key)?;
-        if let Value::Boolean(boolean) = node.value {
-            return Some(boolean);
+        match (&node.value, number(node)) {
+            (Value::Boolean(boolean), _) => Some(Ok(*boolean)),
+            (_, Some(x)) if range.allows(x) => Some(Err(x)),
+            (_, Some(x)) => {
+                let (range, given) = (range.text(), plain(x));
+                self.problem(
+                    key,
+                    format!("must be true, false, or {what}, {range}, but is {given}"),
+                );
+                None
+            }
+            _ => {
+                self.wrong_type(key, node, &format!("true, false, or {what}"));
+                None
+            }
         }
-        self.wrong_type(key, node, "true or false");
-        None
     }
 
     /// A string.

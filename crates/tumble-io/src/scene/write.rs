@@ -10,6 +10,8 @@ use super::description::{
     BodyScene, Geometry, MASS_MODELS, MassScene, MotionScene, Scene, ShapeScene,
 };
 
+use crate::mesh::{Repair, Weld};
+
 /// The first lines of every scene that a run writes.
 pub const HEADER: &str = "# The scene as run, every default written out.";
 
@@ -106,8 +108,14 @@ fn body(body: &BodyScene) -> Table {
             if let Some(origin) = &mesh.origin {
                 put(&mut table, "mesh_origin", origin.display().to_string());
             }
-            if let Some(weld) = mesh.weld {
-                put(&mut table, "weld", weld);
+            match mesh.weld {
+                None => {}
+                Some(Weld::Never) => put(&mut table, "weld", false),
+                Some(Weld::Auto) => put(&mut table, "weld", true),
+                Some(Weld::Within(tolerance)) => put(&mut table, "weld", tolerance),
+            }
+            if mesh.repair != Repair::None {
+                put(&mut table, "mesh_repair", mesh.repair.name());
             }
         }
         Geometry::Shape(shape) => put_shape(&mut table, shape),

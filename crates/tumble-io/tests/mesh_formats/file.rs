@@ -1,7 +1,7 @@
 use std::fs;
 
 use tumble::Mesh;
-use tumble_io::mesh::{Format, Place, parse_mesh, read_mesh, weld};
+use tumble_io::mesh::{Format, Place, Weld, parse_mesh, read_mesh};
 
 use super::{area_and_volume, assert_contains, parse_valid, samples, v};
 
@@ -117,7 +117,7 @@ fn devices_sockets_and_pipes_are_rejected() {
 }
 
 #[test]
-fn welding_merges_exact_duplicates_only() {
+fn welding_without_a_tolerance_merges_equal_vertices_only() {
     let vertices = vec![
         v(1.0, 0.0, 0.0),
         v(0.0, -0.0, 0.0),
@@ -126,8 +126,9 @@ fn welding_merges_exact_duplicates_only() {
         v(0.0, 0.0, -0.0),
         v(0.0, 1.0, 0.0),
     ];
-    let welded =
-        weld(Mesh::new(vertices, vec![[0, 1, 5], [2, 3, 4], [0, 2, 5], [5, 4, 1]]).unwrap());
+    let triangles = vec![[0, 1, 5], [2, 3, 4], [0, 2, 5], [5, 4, 1]];
+    let weld = |mesh: Mesh| mesh.welded(Some(0.0)).mesh;
+    let welded = weld(Mesh::new(vertices, triangles).unwrap());
     // in the order of first occurrence; degenerate triangles are removed
     let expected =
         [v(1.0, 0.0, 0.0), v(0.0, 0.0, 0.0), v(1.0 + f64::EPSILON, 0.0, 0.0), v(0.0, 1.0, 0.0)];
@@ -141,5 +142,6 @@ fn welding_merges_exact_duplicates_only() {
 fn the_caller_can_override_welding() {
     let text = b"v 0 0 0\nv 0 0 0\n";
     let count = |weld| parse_mesh(Format::Obj, text, None, weld).unwrap().mesh.vertices.len();
-    assert_eq!((count(None), count(Some(false)), count(Some(true))), (2, 2, 1));
+    assert_eq!((count(None), count(Some(Weld::Never)), count(Some(Weld::Auto))), (2, 2, 1));
+    assert_eq!(count(Some(Weld::Within(0.0))), 1);
 }

@@ -27,7 +27,7 @@ fn all_vertices_are_kept_in_order_in_double_precision() {
     ];
     assert_eq!(file.mesh.vertices, expected);
     assert_eq!(file.mesh.triangles, [[4, 2, 0]]);
-    assert!(!file.welded);
+    assert!(file.weld.is_none());
     assert_eq!((file.object_count, file.face_count, file.file_vertex_count), (1, 1, 5));
 }
 

@@ -27,7 +27,7 @@ fn numbers_are_read_in_double_precision() {
     let file = parse_valid(&ascii(3, 0, "0.1 1. .5\n-1e-7 +2 3\n0.1 1. .5"));
     assert_eq!(file.mesh.vertices, [v(0.1, 1.0, 0.5), v(-1e-7, 2.0, 3.0), v(0.1, 1.0, 0.5)]);
     assert!(file.mesh.triangles.is_empty());
-    assert!(!file.welded);
+    assert!(file.weld.is_none());
 }
 
 #[test]

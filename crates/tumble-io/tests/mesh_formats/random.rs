@@ -1,22 +1,40 @@
 //! The readers do not panic on random bytes or on damaged valid files.
 
 use proptest::prelude::*;
-use tumble_io::mesh::{Format, parse_mesh};
+use tumble_io::mesh::{Format, Repair, Weld, parse_mesh, prepare};
 
 use super::samples;
 
 /// Parses the bytes and checks the invariants of the mesh or the length of the message.
 fn check_parse(format: Format, bytes: &[u8]) {
-    for weld in [false, true] {
+    for weld in [Weld::Never, Weld::Auto, Weld::Within(1.0)] {
         match parse_mesh(format, bytes, None, Some(weld)) {
             Ok(file) => {
                 let mesh = file.mesh.clone();
-                assert_eq!(tumble::Mesh::new(mesh.vertices, mesh.triangles), Ok(file.mesh));
+                assert_eq!(
+                    tumble::Mesh::new(mesh.vertices, mesh.triangles).as_ref(),
+                    Ok(&file.mesh)
+                );
+                check_prepared(&file.mesh);
                 assert!(file.object_count > 0);
             }
             Err(error) => assert!(error.to_string().len() < 1000, "{error}"),
         }
     }
+}
+
+/// Puts the triangles right and checks what must be so afterwards.
+fn check_prepared(mesh: &tumble::Mesh) {
+    let prepared = prepare(mesh, Repair::None).unwrap();
+    assert_eq!(prepared.mesh.vertices, mesh.vertices);
+    assert!(prepared.mesh.triangles.len() <= mesh.triangles.len());
+    if let Ok(closed) = prepare(mesh, Repair::Close) {
+        assert_eq!(closed.mesh.vertices, mesh.vertices);
+        assert!(
+            closed.mesh.triangles.iter().flatten().all(|&i| (i as usize) < mesh.vertices.len())
+        );
+    }
+    let _ = mesh.holes();
 }
 
 /// Edits of a file: the kind of edit, its position, and the bytes to overwrite, insert or remove.

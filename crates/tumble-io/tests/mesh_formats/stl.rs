@@ -1,4 +1,4 @@
-use tumble_io::mesh::{Format, parse_mesh};
+use tumble_io::mesh::{Format, Weld, parse_mesh};
 
 use super::samples::{stl_binary, stl_text};
 use super::{area_and_volume, assert_contains, parse_valid, v};
@@ -13,13 +13,13 @@ fn a_binary_file_may_begin_with_solid() {
     for header in ["", "solid made by a program", "solid\nfacet normal"] {
         let file = parse_valid(Format::Stl, &stl_binary(header.as_bytes()));
         assert_eq!((file.mesh.vertices.len(), file.mesh.triangles.len()), (4, 4), "{header:?}");
-        assert_eq!((file.file_vertex_count, file.face_count, file.welded), (12, 4, true));
+        assert_eq!((file.file_vertex_count, file.face_count, file.weld.is_some()), (12, 4, true));
     }
 }
 
 #[test]
 fn welding_can_be_disabled() {
-    let file = parse_mesh(Format::Stl, &stl_text(), None, Some(false)).unwrap();
+    let file = parse_mesh(Format::Stl, &stl_text(), None, Some(Weld::Never)).unwrap();
     assert_eq!(file.mesh.vertices.len(), 12);
     assert_eq!(file.mesh.triangles[1], [3, 4, 5]);
     assert_eq!(area_and_volume(&file), area_and_volume(&parse_valid(Format::Stl, &stl_text())));

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec3};
 
 use super::area_weights::{AreaWeights, ParticleSource};
 use super::integrals::{ShellError, SolidError};
-use super::mass::{MassProperties, PrincipalAxes};
+use super::mass::{MassProperties, PrincipalAxes, diagonalise, is_possible_inertia};
 use super::mesh::Mesh;
 use super::moments::ParticleMoments;
 use super::particles::Particles;
@@ -56,6 +56,11 @@ pub enum ShapeError {
     Shell(ShellError),
     /// The inertia overflows a double.
     TooLarge,
+    /// No body has this inertia: a moment is negative, or larger than the sum of the others.
+    Impossible {
+        /// The moments for unit mass (m²), in ascending order.
+        moments: DVec3,
+    },
 }
 
 impl std::fmt::Display for ShapeError {
@@ -71,6 +76,11 @@ impl std::fmt::Display for ShapeError {
             Self::Sample(error) => error.fmt(f),
             Self::Open(error) => error.fmt(f),
             Self::Shell(error) => error.fmt(f),
+            Self::Impossible { moments: m } => write!(
+                f,
+                "no body has the moments of inertia {:e}, {:e} and {:e} m² for unit mass; each is at least 0 and at most the sum of the others",
+                m.x, m.y, m.z
+            ),
             Self::TooLarge => write!(
                 f,
                 "the particles are so far apart that their inertia is not a finite number; scale the body down"
@@ -101,6 +111,8 @@ impl Shape {
 
     /// A shape from a mesh, with particles from `sampling` and mass distributed by `mass_model`.
     ///
+    /// Closed surfaces of the mesh may be wound either way: mass and contact are those of [`Mesh::oriented`].
+    ///
     /// # Errors
     /// [`ShapeError`] if the mesh does not suit the sampling or the mass model.
     pub fn from_mesh(
@@ -108,7 +120,8 @@ impl Shape {
         sampling: Sampling,
         mass_model: MassModel,
     ) -> Result<Self, ShapeError> {
-        let shape = Self::of_sampled_mesh(mesh, sampling, mass_model)?;
+        let mesh = mesh.oriented().mesh;
+        let shape = Self::of_sampled_mesh(&mesh, sampling, mass_model)?;
         Ok(Self { particle_source: sampling.into(), ..shape })
     }
 
@@ -133,7 +146,7 @@ impl Shape {
     /// (I₀/M, m²), both in the frame of `places`.
     ///
     /// # Errors
-    /// [`ShapeError`] if there are no particles, or a number is not finite.
+    /// [`ShapeError`] if there are no particles, a number is not finite, or no body has this inertia.
     pub fn from_distribution(
         places: &[DVec3],
         surface: Mesh,
@@ -158,6 +171,11 @@ impl Shape {
         }
         if !centre.is_finite() || !gyration.is_finite() {
             return Err(ShapeError::TooLarge);
+        }
+        if !carries_mass && !is_possible_inertia(gyration) {
+            let mut moments = diagonalise(gyration.to_cols_array_2d()).0;
+            moments.sort_by(f64::total_cmp);
+            return Err(ShapeError::Impossible { moments: DVec3::from_array(moments) });
         }
         // rounding of the coordinates may appear as inertia of up to this length squared
         let largest = places.iter().fold(0.0f64, |m, p| m.max(p.abs().max_element()));
@@ -240,6 +258,19 @@ mod tests {
         assert_eq!(shape.principal().rotation_count(), 3);
         let m = shape.principal().moments;
         assert!((m.x + m.y - m.z).abs() < 1e-15, "perpendicular axis theorem");
+    }
+
+    #[test]
+    fn impossible_moments_are_refused() {
+        let of = |x: f64, y: f64, z: f64| {
+            let inertia = DMat3::from_diagonal(DVec3::new(x, y, z));
+            Shape::from_distribution(&[DVec3::X], Mesh::default(), DVec3::ZERO, inertia)
+        };
+        assert!(of(1.0, 1.0, 2.0).is_ok() && of(0.0, 1.0, 1.0).is_ok());
+        for (x, y, z) in [(-1.0, 2.0, 2.0), (1.0, 1.0, 2.1), (-1e-3, 1.0, 1.0), (-1.0, -1.0, -1.0)]
+        {
+            assert!(matches!(of(x, y, z), Err(ShapeError::Impossible { .. })), "{x} {y} {z}");
+        }
     }
 
     #[test]

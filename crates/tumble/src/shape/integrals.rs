@@ -16,6 +16,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::mass::is_possible_second_moment;
 use super::mesh::Mesh;
 use super::watertight::Watertightness;
 
@@ -57,6 +58,13 @@ pub enum SolidError {
     Edges(Watertightness),
     /// The mesh is closed but flat: the enclosed volume is zero up to rounding.
     NoVolume,
+    /// The mass properties are those of no body, because parts of the mesh enclose a negative volume.
+    Impossible {
+        /// The signed volume (m³).
+        volume: f64,
+        /// The centre of mass that follows from it (m).
+        centre: DVec3,
+    },
     /// The mesh is smaller than 1e-60 m or larger than 1e60 m, beyond the range of doubles.
     OutOfRange {
         /// The longest edge of its bounding box (m).
@@ -70,6 +78,12 @@ impl std::fmt::Display for SolidError {
             Self::NoTriangles => write!(f, "the mesh has no triangles, so it bounds no solid"),
             Self::Edges(watertightness) => watertightness.fmt(f),
             Self::NoVolume => write!(f, "the mesh is closed but encloses no volume"),
+            Self::Impossible { volume, centre } => write!(
+                f,
+                "the mesh bounds no possible solid: a volume of {volume:.4e} m³ with its centre at ({:.4}, {:.4}, {:.4}); \
+                 parts of its surface are wound inwards or cross themselves",
+                centre.x, centre.y, centre.z
+            ),
             Self::OutOfRange { size } => out_of_range(f, *size),
         }
     }
@@ -207,8 +221,8 @@ impl Mesh {
     /// size a at a distance d from the origin is that of its coordinates, about 2⁻⁵³ d/a.
     ///
     /// # Errors
-    /// [`SolidError`] if the mesh has no triangles, open or wrongly wound edges, no volume, or a size
-    /// beyond the range of doubles.
+    /// [`SolidError`] if the mesh has no triangles, open or wrongly wound edges, no volume, parts with a negative
+    /// volume that make the result impossible, or a size beyond the range of doubles.
     pub fn solid_integrals(&self) -> Result<Integrals, SolidError> {
         let bounds = self.bounds().ok_or(SolidError::NoTriangles)?;
         let watertightness = self.watertightness();
@@ -235,11 +249,13 @@ impl Mesh {
         // all moments of a mesh wound inwards change sign
         let about_centre = self.moments(centre, measures);
         let sign = about_box.measure.signum();
-        Ok(Integrals {
-            measure: sign * about_centre.measure / 6.0,
-            centre,
-            second_moment: about_centre.second_moment(sign / 120.0),
-        })
+        let measure = sign * about_centre.measure / 6.0;
+        let second_moment = about_centre.second_moment(sign / 120.0);
+        let is_outside = (centre - origin).abs().cmpgt(0.5 * (bounds.max - bounds.min)).any();
+        if is_outside || !is_possible_second_moment(second_moment) {
+            return Err(SolidError::Impossible { volume: measure, centre });
+        }
+        Ok(Integrals { measure, centre, second_moment })
     }
 
     /// Area (m²), centre (m) and second moment (m⁴) of the mesh's surface, exact up to rounding.

@@ -44,6 +44,23 @@ pub(crate) fn inertia_from_second_moment(second: DMat3) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(trace)) - second
 }
 
+/// Moments that are negative by more than this fraction of the largest are no rounding errors.
+const IMPOSSIBLE: f64 = 1e-6;
+
+/// Whether ∫ r rᵀ is that of some body: it has no negative eigenvalue, up to rounding.
+pub(crate) fn is_possible_second_moment(second: DMat3) -> bool {
+    let (values, _) = diagonalise(second.to_cols_array_2d());
+    let largest = values.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    values.iter().all(|&x| x >= -IMPOSSIBLE * largest)
+}
+
+/// Whether an inertia tensor is that of some body: no moment is negative, and none is larger than the sum of the others, up to
+/// rounding.
+pub(crate) fn is_possible_inertia(inertia: DMat3) -> bool {
+    let trace = inertia.x_axis.x + inertia.y_axis.y + inertia.z_axis.z;
+    is_possible_second_moment(DMat3::from_diagonal(DVec3::splat(0.5 * trace)) - inertia)
+}
+
 /// The principal moments and axes of an inertia tensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalAxes {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::mesh::Mesh;
+use super::repair::{EdgeTable, net_direction};
 
 /// The maximum length of [`Watertightness::first`].
 const MAX_LISTED: usize = 5;
@@ -81,23 +82,28 @@ impl std::fmt::Display for Watertightness {
                 EdgeFault::Open => "open",
                 EdgeFault::WronglyWound => "wrongly wound",
             };
-            write!(
-                f,
-                "{} {what} from vertex {a} ({}, {}, {}) to vertex {b} ({}, {}, {})",
-                if nth == 0 { ";" } else { "," },
-                p.x,
-                p.y,
-                p.z,
-                q.x,
-                q.y,
-                q.z
-            )?;
+            let separator = if nth == 0 { ";" } else { "," };
+            let (p, q) = (short(p), short(q));
+            write!(f, "{separator} {what} from vertex {a} {p} to vertex {b} {q}")?;
         }
         if self.open_edges + self.wrongly_wound > self.first.len() {
             write!(f, ", …")?;
         }
         Ok(())
     }
+}
+
+/// A point with the digits by which it can be found.
+pub(super) fn short(place: DVec3) -> String {
+    let [x, y, z] = place.to_array().map(|x| {
+        // adding zero turns −0 into 0
+        let x = x + 0.0;
+        let is_usual = x == 0.0 || (1e-3..1e6).contains(&x.abs());
+        let text = if is_usual { format!("{x:.6}") } else { format!("{x:.4e}") };
+        let (digits, exponent) = text.split_at(text.find('e').unwrap_or(text.len()));
+        format!("{}{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
+    });
+    format!("({x}, {y}, {z})")
 }
 
 /// For each vertex, the lowest index of the vertices at the same coordinates.
@@ -120,50 +126,6 @@ pub(crate) fn weld(vertices: &[DVec3]) -> Vec<u32> {
         first_of[index as usize] = first;
     }
     first_of
-}
-
-/// All half-edges, in buckets by the lower vertex index of the edge.
-struct HalfEdges {
-    /// The start of the bucket of each vertex, and the end of the last.
-    starts: Vec<usize>,
-    /// Twice the higher vertex index, plus one if the half-edge runs from the higher to the lower.
-    entries: Vec<u64>,
-}
-
-impl HalfEdges {
-    fn new(triangles: &[[u32; 3]], vertex_count: usize) -> Self {
-        let edges = || triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-
-        // a bucket sort: count, then fill
-        let mut starts = vec![0usize; vertex_count + 1];
-        for (a, b) in edges() {
-            starts[a.min(b) as usize + 1] += 1;
-        }
-        for i in 0..vertex_count {
-            starts[i + 1] += starts[i];
-        }
-        let mut next = starts.clone();
-        let mut entries = vec![0u64; 3 * triangles.len()];
-        for (a, b) in edges() {
-            let slot = &mut next[a.min(b) as usize];
-            entries[*slot] = 2 * u64::from(a.max(b)) + u64::from(a > b);
-            *slot += 1;
-        }
-        Self { starts, entries }
-    }
-
-    /// Calls `visit(lower, higher, ascending half-edges, descending half-edges)` for each edge, in order of
-    /// vertex index.
-    fn each_edge(&mut self, mut visit: impl FnMut(u32, u32, usize, usize)) {
-        for (lower, ends) in (0u32..).zip(self.starts.windows(2)) {
-            let bucket = &mut self.entries[ends[0]..ends[1]];
-            bucket.sort_unstable();
-            for edge in bucket.chunk_by(|a, b| a / 2 == b / 2) {
-                let down = edge.iter().filter(|&&e| e % 2 == 1).count();
-                visit(lower, (edge[0] / 2) as u32, edge.len() - down, down);
-            }
-        }
-    }
 }
 
 impl Mesh {
@@ -192,12 +154,12 @@ impl Mesh {
             ignored_triangles: self.triangles.len() - triangles.len(),
             ..Watertightness::default()
         };
-        HalfEdges::new(&triangles, welded.len()).each_edge(|lower, upper, up, down| {
-            found.non_manifold += usize::from(up + down > 2);
-            if up == down {
-                return;
+        for (lower, edge) in EdgeTable::new(&triangles, welded.len()).edges() {
+            found.non_manifold += usize::from(edge.len() > 2);
+            if net_direction(edge) == 0 {
+                continue;
             }
-            let fault = if (up + down) % 2 == 1 {
+            let fault = if edge.len() % 2 == 1 {
                 found.open_edges += 1;
                 EdgeFault::Open
             } else {
@@ -205,11 +167,11 @@ impl Mesh {
                 EdgeFault::WronglyWound
             };
             if found.first.len() < MAX_LISTED {
-                let vertices = [lower, upper];
+                let vertices = [lower, edge[0].upper];
                 let positions = vertices.map(|i| self.vertices[i as usize]);
                 found.first.push(FaultyEdge { vertices, positions, fault });
             }
-        });
+        }
         found
     }
 }
@@ -246,6 +208,13 @@ mod tests {
                 .starts_with("the mesh is not closed: 3 open and 0 wrongly wound edges; open from vertex 0 (0, 0, 0) to vertex 2 (0, 1, 0)"),
             "{found}"
         );
+    }
+
+    #[test]
+    fn places_are_short() {
+        let place = DVec3::new(0.1 + 0.2, 1.2e-17, -1234567.0);
+        assert_eq!(short(place), "(0.3, 1.2e-17, -1.2346e6)");
+        assert_eq!(short(DVec3::new(10.0, 100.5, -0.0)), "(10, 100.5, 0)");
     }
 
     #[test]
