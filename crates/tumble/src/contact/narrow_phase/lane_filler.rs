@@ -98,11 +98,7 @@ impl<'a> LaneFiller<'a> {
         }
         poses.write_law(pair, point, lane, lanes);
         if self.context.is_solved {
-            // over the force, k w δ
-            let scale = geometry.weight * geometry.contact_distance_or_depth;
-            let couple =
-                if geometry.couple == DVec3::ZERO { DVec3::ZERO } else { geometry.couple / scale };
-            set(&mut lanes.couple, lane, couple);
+            set(&mut lanes.couple, lane, geometry.couple);
         } else if geometry.couple != DVec3::ZERO {
             let couple = geometry.couple * lanes.stiffness[lane];
             pairs[candidate.pair as usize].add_couple(couple);

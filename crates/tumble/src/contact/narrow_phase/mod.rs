@@ -8,6 +8,7 @@ mod exits;
 mod lane_filler;
 mod pair_poses;
 mod point_mesh;
+mod point_view;
 mod segment;
 mod sphere_sphere;
 mod sphere_wall;

@@ -20,7 +20,8 @@ pub(super) struct PointGeometry {
     pub contact_distance_or_depth: f64,
     /// Factor on the stiffness of the normal spring and dashpot.
     pub weight: f64,
-    /// Torque on the first body in addition to that of the force, over the stiffness (m²).
+    /// Torque on the first body in addition to that of the force, over the stiffness (m²); for the implicit solver over the
+    /// force (m).
     pub couple: DVec3,
 }
 

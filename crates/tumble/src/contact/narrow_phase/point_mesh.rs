@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::lane_filler::LaneFiller;
 use super::pair_poses::{PairPoses, PointGeometry};
+use super::point_view::PointView;
 use super::surface_point::{PointContact, SurfacePoint};
 use crate::contact::chunk_contacts::Candidate;
 use crate::contact::mesh_cache::{BLOCK, MeshCache, RelativePose};
@@ -42,9 +43,18 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
     let contact_pair = filler.begin_pair::<PREDICT>(index, pair);
     let margin =
         if is_fast { pair.search_margin.max(poses.step_displacement) } else { pair.search_margin };
-    let reach = poses.reach;
-    let mut query =
-        MeshQuery { pair, particles, mesh, mesh_cache, needs_distance: is_fast, margin, reach };
+    let (reach, context) = (poses.reach, filler.context);
+    let ahead = context.is_solved.then_some(context.since_kick.step);
+    let mut query = MeshQuery {
+        pair,
+        particles,
+        mesh,
+        mesh_cache,
+        needs_distance: is_fast,
+        margin,
+        reach,
+        ahead,
+    };
     let mut clear_until = f64::INFINITY;
     for (block, start) in (pair.start..pair.end).step_by(BLOCK).enumerate() {
         let mut block_clear_until = *query.mesh_cache.block_clear_until(pair.cache, block);
@@ -102,8 +112,9 @@ struct MeshQuery<'a> {
     needs_distance: bool,
     /// How far beyond the contact distance the mesh is searched (m).
     margin: f64,
-    /// Up to which gap contacts are found (m).
+    /// Up to which gap contacts are found (m), and how far ahead in time those of surfaces (s), for the implicit solver.
     reach: f64,
+    ahead: Option<f64>,
 }
 
 impl MeshQuery<'_> {
@@ -150,15 +161,22 @@ impl MeshQuery<'_> {
         if depth <= -self.reach {
             return Err(-depth);
         }
-        let is_apart = depth <= 0.0 && half_length == 0.0;
-        let Some(points) = points.filter(|_| !is_apart) else {
+        let Some(points) = points else {
             return Ok((position, PointContact::plain(nearest.gradient, depth)));
         };
-        let surface = SurfacePoint::new(points, body.points().index_of_slot(point.particle));
-        let to_mesh = mesh_pose.rotation.transpose() * pose.rotation;
+        let view = PointView {
+            surface: SurfacePoint::new(points, body.points().index_of_slot(point.particle)),
+            mesh: signed_distance,
+            to_mesh: mesh_pose.rotation.transpose() * pose.rotation,
+            place: local,
+            contact_distance,
+        };
+        let found = match self.ahead {
+            None => view.touching(&nearest),
+            Some(step) => view.within(step, &nearest, [pose, mesh_pose], position),
+        };
         // 0: the next step has to look again
-        let (offset, contact) =
-            surface.contact(signed_distance, to_mesh, local, &nearest).ok_or(0.0)?;
+        let (offset, contact) = found.ok_or(0.0)?;
         Ok((position + mesh_pose.rotation * offset, contact))
     }
 

@@ -42,6 +42,7 @@ impl PointContact {
 }
 
 /// A contact point, as seen from its own body.
+#[derive(Clone, Copy)]
 pub(super) struct SurfacePoint<'a> {
     /// Half of the segment that it stands for (m), zero for a fixed point.
     half_segment: DVec3,
