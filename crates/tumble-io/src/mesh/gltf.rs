@@ -208,8 +208,8 @@ impl<'a> Scene<'a> {
         match primitive.mode {
             4 if !corners.len().is_multiple_of(3) => {
                 return Err(error(format!(
-                    "a primitive of triangles has {} corners, which is no multiple of 3",
-                    corners.len()
+                    "a primitive of triangles has {}, which is no multiple of 3",
+                    counted(corners.len(), "corner", "corners")
                 )));
             }
             4 => corners.chunks_exact(3).for_each(|triangle| self.faces.push(triangle)),
