@@ -5,8 +5,8 @@
 //!
 //! Read: the triangles, strips and fans of all nodes of the scene (or of the first scene; without
 //! scenes of all nodes; without nodes all meshes as they stand), moved by the nodes' transforms in f64.
-//! Each instance of a mesh has its own vertices. Points, lines, materials and animations are ignored. Morph targets have zero
-//! weight. A skinned mesh is read in its base pose, as its vertices are stored: by the specification, the transform of its node does
+//! Each instance of a mesh has its own vertices. Points, lines, materials and animations are ignored. Morph targets displace
+//! the vertices by the weights of the node, or else of the mesh. A skinned mesh is read in its base pose, as its vertices are stored: by the specification, the transform of its node does
 //! not apply.
 
 mod data;
@@ -97,7 +97,7 @@ impl<'a> Scene<'a> {
         let document = self.document;
         if document.nodes.is_empty() {
             return (0..document.meshes.len())
-                .try_for_each(|mesh| self.add_mesh(mesh, DAffine3::IDENTITY));
+                .try_for_each(|mesh| self.add_mesh(mesh, None, DAffine3::IDENTITY));
         }
         let mut seen = vec![false; document.nodes.len()];
         let roots = self.roots()?;
@@ -115,10 +115,9 @@ impl<'a> Scene<'a> {
                 )));
             }
             let transform = *parent * local_transform(node, index)?;
-            match (node.mesh, node.skin) {
-                (Some(mesh), None) => self.add_mesh(mesh as usize, transform)?,
-                (Some(mesh), Some(_)) => self.add_mesh(mesh as usize, DAffine3::IDENTITY)?,
-                (None, _) => {}
+            if let Some(mesh) = node.mesh {
+                let own = if node.skin.is_some() { DAffine3::IDENTITY } else { transform };
+                self.add_mesh(mesh as usize, node.weights.as_deref(), own)?;
             }
             levels.push((node.children.iter(), transform));
         }
@@ -139,10 +138,16 @@ impl<'a> Scene<'a> {
         Ok((0..is_child.len()).filter(|&node| !is_child[node]).collect())
     }
 
-    /// Adds an instance of a mesh.
-    fn add_mesh(&mut self, mesh: usize, transform: DAffine3) -> Result<(), ReadError> {
+    /// Adds an instance of a mesh. `weights` of its morph targets replace its own.
+    fn add_mesh(
+        &mut self,
+        mesh: usize,
+        weights: Option<&[f64]>,
+        transform: DAffine3,
+    ) -> Result<(), ReadError> {
         let mesh = get(&self.document.meshes, mesh, "mesh")?;
         self.object_count += 1;
+        let weights = weights.unwrap_or(&mesh.weights);
         // primitives may share their vertices
         let mut first_of = BTreeMap::new();
         for primitive in &mesh.primitives {
@@ -151,21 +156,39 @@ impl<'a> Scene<'a> {
             if !(4..=6).contains(&primitive.mode) {
                 continue;
             }
-            let first = match first_of.get(&position) {
+            let morph = morph(primitive, weights);
+            let shifts: Vec<_> = morph.iter().map(|(at, weight)| (*at, weight.to_bits())).collect();
+            let key = (position, shifts);
+            let first = match first_of.get(&key) {
                 Some(&first) => first,
-                None => self.add_vertices(position, transform)?,
+                None => self.add_vertices(position, &morph, transform)?,
             };
-            first_of.insert(position, first);
+            first_of.insert(key, first);
             self.add_faces(primitive, position, first, transform.matrix3.determinant() < 0.0)?;
         }
         Ok(())
     }
 
-    fn add_vertices(&mut self, position: usize, transform: DAffine3) -> Result<usize, ReadError> {
-        self.buffers.load(position)?;
-        self.charge(self.buffers.count(position)?)?;
+    fn add_vertices(
+        &mut self,
+        position: usize,
+        morph: &[(usize, f64)],
+        transform: DAffine3,
+    ) -> Result<usize, ReadError> {
+        let mut positions = self.positions(position)?;
+        for &(target, weight) in morph {
+            let shifts = self.positions(target)?;
+            if shifts.len() != positions.len() {
+                return Err(error(format!(
+                    "a morph target displaces {}, but its primitive has {}",
+                    counted(shifts.len(), "vertex", "vertices"),
+                    positions.len()
+                )));
+            }
+            positions.iter_mut().zip(shifts).for_each(|(point, shift)| *point += weight * shift);
+        }
         let first = self.vertices.len();
-        for vertex in self.buffers.positions(position)? {
+        for vertex in positions {
             let vertex = transform.transform_point3(vertex);
             if !vertex.is_finite() {
                 return Err(error("a vertex becomes infinite by the transforms of its nodes"));
@@ -176,6 +199,13 @@ impl<'a> Scene<'a> {
             return Err(error("the scene has more than 4,294,967,295 vertices"));
         }
         Ok(first)
+    }
+
+    /// The vectors of an accessor.
+    fn positions(&mut self, accessor: usize) -> Result<Vec<DVec3>, ReadError> {
+        self.buffers.load(accessor)?;
+        self.charge(self.buffers.count(accessor)?)?;
+        self.buffers.positions(accessor)
     }
 
     fn add_faces(
@@ -252,6 +282,15 @@ impl<'a> Scene<'a> {
             side_files: self.buffers.into_side_names(),
         })
     }
+}
+
+/// The accessors of the displacements of a primitive and their weights, without those that are zero.
+fn morph(primitive: &Primitive, weights: &[f64]) -> Vec<(usize, f64)> {
+    let targets = primitive.targets.iter().zip(weights);
+    targets
+        .filter(|(_, weight)| **weight != 0.0)
+        .filter_map(|(target, weight)| Some((target.position?, *weight)))
+        .collect()
 }
 
 /// The transform of a node relative to its parent.

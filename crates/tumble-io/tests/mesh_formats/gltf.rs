@@ -145,6 +145,46 @@ fn sparse_quantised_and_interleaved_positions_are_read() {
 }
 
 #[test]
+fn morph_targets_displace_vertices_by_the_weights_of_the_node_or_mesh() {
+    let primitive = r#"{"attributes":{"POSITION":0},"indices":1}"#;
+    // the displacements are the positions themselves: weights w scale the tetrahedron by 1 + Σ w
+    let with_targets = |weights: &str, node: &str, more: &str| {
+        let morphed = r#"{"attributes":{"POSITION":0},"indices":1,"targets":[{"POSITION":0},{"NORMAL":9},{"POSITION":0}]}"#;
+        let json = gltf_json(&data_uri(), node, "");
+        assert!(json.contains(primitive));
+        json.replacen(primitive, &format!("{morphed}{more}"), 1).replacen(
+            r#""meshes":[{"#,
+            &format!(r#""meshes":[{{{weights}"#),
+            1,
+        )
+    };
+    let volume =
+        |json: &str| area_and_volume(&super::parse_valid(Format::Gltf, json.as_bytes())).1 / 0.75;
+    let plain = r#"{"mesh":0}"#;
+    assert_eq!(volume(&with_targets("", plain, "")), 1.0);
+    assert_eq!(volume(&with_targets(r#""weights":[0,0,0],"#, plain, "")), 1.0);
+    assert_eq!(volume(&with_targets(r#""weights":[1,5,0],"#, plain, "")), 8.0);
+    assert_eq!(volume(&with_targets(r#""weights":[0.75,5,0.25],"#, plain, "")), 8.0);
+    let own = r#"{"mesh":0,"weights":[0,0,0.5]}"#;
+    assert_eq!(volume(&with_targets(r#""weights":[1,5,0],"#, own, "")), 3.375);
+    // a second primitive without targets does not share the displaced vertices
+    let two = with_targets(r#""weights":[1,5,0],"#, plain, &format!(",{primitive}"));
+    assert_eq!(volume(&two), 9.0);
+    // as many displacements as vertices
+    let fewer = r#""SCALAR"},{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}"#;
+    let json = with_targets(r#""weights":[1],"#, plain, "")
+        .replacen(r#""targets":[{"POSITION":0}"#, r#""targets":[{"POSITION":2}"#, 1)
+        .replacen(r#""SCALAR"}"#, fewer, 1);
+    assert_contains(&parse_invalid(&json), &["displaces 3 vertices", "its primitive has 4"]);
+    let message = parse_invalid(&with_targets(r#""weights":[1],"#, plain, "").replacen(
+        r#""targets":[{"POSITION":0}"#,
+        r#""targets":[{"POSITION":1}"#,
+        1,
+    ));
+    assert_contains(&message, &["accessor 1 holds POSITION and must be of type VEC3"]);
+}
+
+#[test]
 fn side_files_outside_the_folder_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("inner");

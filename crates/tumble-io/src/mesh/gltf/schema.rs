@@ -52,12 +52,17 @@ pub(super) struct Node {
     /// A quaternion x, y, z, w.
     pub(super) rotation: Option<Box<[f64; 4]>>,
     pub(super) scale: Option<Box<[f64; 3]>>,
+    /// Weights of morph targets, in place of those of the mesh.
+    pub(super) weights: Option<Box<[f64]>>,
 }
 
 #[derive(Deserialize)]
 pub(super) struct MeshEntry {
     #[serde(default)]
     pub(super) primitives: Vec<Primitive>,
+    /// Weights of the morph targets.
+    #[serde(default)]
+    pub(super) weights: Vec<f64>,
 }
 
 #[derive(Deserialize)]
@@ -66,6 +71,9 @@ pub(super) struct Primitive {
     pub(super) indices: Option<usize>,
     #[serde(default = "triangles")]
     pub(super) mode: u32,
+    /// Morph targets: displacements of the attributes.
+    #[serde(default)]
+    pub(super) targets: Vec<Attributes>,
 }
 
 fn triangles() -> u32 {
