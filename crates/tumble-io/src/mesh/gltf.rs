@@ -151,7 +151,7 @@ impl<'a> Scene<'a> {
         // primitives may share their vertices
         let mut first_of = BTreeMap::new();
         for primitive in &mesh.primitives {
-            self.charge(1)?;
+            self.charge(1 + primitive.targets.len())?;
             let Some(position) = primitive.attributes.position else { continue };
             if !(4..=6).contains(&primitive.mode) {
                 continue;

@@ -252,6 +252,14 @@ fn excessive_instancing_is_rejected() {
         &primitives.replace("}}", r#"},"mode":6}"#),
     );
     assert_contains(&parse_invalid(&json), &["out of proportion"]);
+    // nor does a primitive of as many morph targets
+    let targets = vec!["{}"; 2_000].join(",");
+    let json = gltf_json(&data_uri(), &nodes, "").replacen(
+        r#""indices":1"#,
+        &format!(r#""indices":1,"targets":[{targets}]"#),
+        1,
+    );
+    assert_contains(&parse_invalid(&json), &["out of proportion"]);
     // a sparse accessor without a base buffer
     let sparse = r#""count":4000000000,"sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":0}},"type":"VEC3""#;
     assert_contains(
@@ -328,7 +336,7 @@ fn out_of_range_references_are_rejected() {
     );
     assert_contains(
         &parse_invalid_with(r#""count":4"#, r#""byteOffset":18446744073709551615,"count":4"#),
-        &["reach beyond"],
+        &["with 4 elements reaches beyond"],
     );
     assert_contains(
         &parse_invalid_with(r#""count":4"#, r#""count":2"#),

@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::super::error::ReadError;
 use super::super::file;
 use super::schema::{Accessor, Document, Kind, Sparse, SparsePart};
+use crate::counted::counted;
 
 /// The buffers of a document. Each is loaded when it is first needed, a file once.
 pub(super) struct Buffers<'a> {
@@ -234,9 +235,9 @@ impl<'a> Buffers<'a> {
             .and_then(|end| bytes.get(view.byte_offset..end))
             .ok_or_else(|| {
                 error(format!(
-                    "bufferView {} reaches beyond the {} bytes of buffer {}",
+                    "bufferView {} reaches beyond the {} of buffer {}",
                     part.buffer_view,
-                    bytes.len(),
+                    counted(bytes.len(), "byte", "bytes"),
                     view.buffer
                 ))
             })?;
@@ -244,8 +245,9 @@ impl<'a> Buffers<'a> {
         let stride = view.byte_stride.unwrap_or(size);
         if stride < size {
             return Err(error(format!(
-                "bufferView {} has a byteStride of {stride}, but each element takes {size} bytes",
-                part.buffer_view
+                "bufferView {} has a byteStride of {stride}, but each element takes {}",
+                part.buffer_view,
+                counted(size, "byte", "bytes")
             )));
         }
         let needed = count.saturating_sub(1).checked_mul(stride).and_then(|n| n.checked_add(size));
@@ -255,8 +257,10 @@ impl<'a> Buffers<'a> {
             .map(|bytes| Elements { bytes, stride, component, normalized: false })
             .ok_or_else(|| {
                 error(format!(
-                    "an accessor promises {count} elements, which reach beyond the {} bytes of bufferView {}",
-                    view.byte_length, part.buffer_view
+                    "an accessor with {} reaches beyond the {} of bufferView {}",
+                    counted(count, "element", "elements"),
+                    counted(view.byte_length, "byte", "bytes"),
+                    part.buffer_view
                 ))
             })
     }
