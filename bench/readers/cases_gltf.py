@@ -155,6 +155,18 @@ def morphed(**where):
     return document
 
 
+def skinned(scale=1.0, joint=(1.0, 0.0, 0.0)):
+    """All corners follow a joint that was bound at (1, 0, 0), under a parent of this scale. The node of the mesh is elsewhere."""
+    document = Document()
+    attributes = document.json["meshes"][0]["primitives"][0]["attributes"]
+    attributes["JOINTS_0"] = document.accessor(pack(5121, [0] * 16), 5121, 4, "VEC4")
+    attributes["WEIGHTS_0"] = document.accessor(pack(5126, [1, 0, 0, 0] * 4), 5126, 4, "VEC4")
+    bind = document.accessor(pack(5126, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1]), 5126, 1, "MAT4")
+    entries = [{"mesh": 0, "skin": 0, "translation": [9, 9, 9]}, {"scale": [scale] * 3, "children": [2]}, {"translation": list(joint)}]
+    skin = [{"joints": [2], "inverseBindMatrices": bind}]
+    return document.change(nodes=entries, scenes=[{"nodes": [0, 1]}], skins=skin)
+
+
 def compressed(extension, required):
     document = Document()
     document.json["meshes"][0]["primitives"][0]["extensions"] = {extension: {"bufferView": 0, "attributes": {"POSITION": 0}}}
@@ -226,6 +238,9 @@ CASES = [
     case("morph target without weights", morphed(), rule="weights are 0 unless they are given"),
     case("morph target, weight of the mesh", morphed(mesh={"weights": [1.0]}), DOUBLE, "the weights of the mesh apply"),
     case("morph target, weight of the node", morphed(mesh={"weights": [0.0]}, node={"weights": [1.0]}), DOUBLE, "the weights of the node come first"),
+    case("skin, joint where it was bound", skinned(), rule="the transform of the node does not apply"),
+    case("skin, joint moved", skinned(joint=(6.0, 0.0, 0.0)), moved((5, 0, 0)), "the joints move the vertices"),
+    case("skin, skeleton scaled", skinned(2.0), moved((0, 0, 0), 2), "the joints move the vertices, with their parents"),
     case("unknown extension, not required", Document().change(extensionsUsed=["VENDOR_x"], extensions={"VENDOR_x": {}}), rule="may be ignored"),
     case("unknown extension, required", Document().change(extensionsUsed=["VENDOR_x"], extensionsRequired=["VENDOR_x"]), REFUSED, "must be known"),
     case("Draco, required", compressed("KHR_draco_mesh_compression", True), REFUSED, "compressed"),
