@@ -27,7 +27,7 @@ fi
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 cat > "$out/points.toml" << 'SCENE'
-# bare particles, gravity along -z, a name that must be escaped in XML and USD
+# bare particles, gravity along -z, names that must be escaped in XML, USD, JSON or HTML
 duration = 0.5
 gravity = [0.0, 0.0, -9.8]
 wall = [{ normal = [0.0, 0.3, 1.0] }]
@@ -36,6 +36,18 @@ name = "0 <points> & \\ öß"
 particles = [[0, 0, 0], [0.3, 0, 0], [0, 0.2, 0], [0, 0, 0.5]]
 position = [0.0, 0.0, 1.0]
 initial_angular_velocity = [1.0, 2.0, 3.0]
+[[body]]
+name = "</script><!-- it's"
+particles = [[0, 0, 0], [0.3, 0, 0]]
+position = [1.0, 0.0, 1.0]
+[[body]]
+name = "../../Shapes {def} ]]> $HOME `id`"
+particles = [[0, 0, 0], [0.3, 0, 0]]
+position = [2.0, 0.0, 1.0]
+[[body]]
+name = "=1+1"
+particles = [[0, 0, 0], [0.3, 0, 0]]
+position = [3.0, 0.0, 1.0]
 SCENE
 
 "$tumble" run racket --out "$out/racket" --duration 3 > /dev/null

@@ -48,6 +48,25 @@ async function drawing(browser) {
   await closeSilent('task2', page);
 }
 
+async function names(browser) {
+  const page = await open(browser, recorded('names'));
+  await until('the page starts', page, () => window.tumble !== undefined);
+  const found = await page.evaluate(() => ({
+    scene: document.querySelector('#name').textContent,
+    title: document.title,
+    bodies: tumble.app.header.bodies.map(({ name }) => name),
+    shown: [...document.querySelectorAll('[role=rowheader]')].map((cell) => cell.textContent),
+    elements: document.querySelectorAll('img, script').length,
+  }));
+  const scene = '<img src=x onerror=alert(1)> & <!--';
+  check('the name of the scene is text', found.scene === scene && found.title === `${scene} – tumble`, JSON.stringify(found));
+  check('the names of bodies are text', found.shown.length > 0 && found.shown.every((name) => found.bodies.includes(name)), JSON.stringify(found));
+  const plain = await open(browser, recorded('task2'));
+  check('names add no elements', (await plain.evaluate(() => document.querySelectorAll('img, script').length)) === found.elements);
+  await plain.context().close();
+  await closeSilent('names', page);
+}
+
 async function playing(browser) {
   const page = await open(browser, recorded('task2'));
   await page.click('#play');
@@ -290,7 +309,7 @@ async function live(browser) {
 const only = process.argv[4];
 const browser = await launch();
 try {
-  for (const part of [drawing, playing, panel, views, phone, autoplay, manyBodies, accessibility, withoutWebgl, live]) {
+  for (const part of [drawing, names, playing, panel, views, phone, autoplay, manyBodies, accessibility, withoutWebgl, live]) {
     if (only && part.name !== only) continue;
     console.log(`\n${part.name}`);
     await part(browser);

@@ -21,6 +21,19 @@ done
 "$tumble" run many --out "$out/thousand" --duration 0.5 --set 'body.1.position=[0.0,2.5,0.0]' \
     --set 'body.0.copies={count=[10,5,10],spacing=[0.18,0.2,0.18],seed=1}' \
     --set 'body.1.copies={count=[10,5,10],spacing=[0.18,0.2,0.18],seed=2}' >/dev/null
+mkdir "$out/scenes"
+cat >"$out/scenes/<img src=x onerror=alert(1)> & <!--.toml" <<'SCENE'
+# names that mean something in HTML
+duration = 0.1
+[[body]]
+name = "</script><script>alert(1)</script><!--"
+shape = "sphere"
+[[body]]
+name = "<img src=x onerror=alert(2)> &amp; 'it'"
+shape = "sphere"
+position = [1, 0, 0]
+SCENE
+"$tumble" run "$out/scenes/<img src=x onerror=alert(1)> & <!--.toml" --out "$out/names" >/dev/null
 
 node e2e/page.mjs "$out" "$@"
 # the tests with a real server, unless a single test was selected

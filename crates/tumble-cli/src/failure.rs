@@ -10,8 +10,10 @@ use crate::console;
 pub enum Failure {
     /// The simulation failed or a file could not be written: exit status 1.
     Run(String),
-    /// The command line, scene, mesh, checkpoint or run is invalid: exit status 2.
+    /// The command line, mesh, checkpoint or run is invalid: exit status 2.
     Call(String),
+    /// The scene is invalid: exit status 2. The message may have colours.
+    Scene(String),
     /// Stopped by Ctrl-C: exit status 130.
     Interrupted,
 }
@@ -32,7 +34,7 @@ impl From<&SceneError> for Failure {
         } else {
             String::new()
         };
-        Self::Call(format!("{}{total}", error.render(console::use_colour())))
+        Self::Scene(format!("{}{total}", error.render(console::use_colour())))
     }
 }
 

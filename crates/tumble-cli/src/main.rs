@@ -29,7 +29,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::console::print_error;
+use crate::console::{print_error, print_styled_error};
 use crate::failure::Failure;
 
 #[derive(Parser)]
@@ -83,6 +83,10 @@ fn main() -> ExitCode {
         }
         Err(Failure::Call(message)) => {
             print_error(&message);
+            ExitCode::from(2)
+        }
+        Err(Failure::Scene(message)) => {
+            print_styled_error(&message);
             ExitCode::from(2)
         }
         Err(Failure::Interrupted) => ExitCode::from(130),

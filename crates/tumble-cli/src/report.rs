@@ -1,5 +1,8 @@
 //! The report on a finished run.
 
+use std::path::Path;
+
+use tumble_io::on_one_line;
 use tumble_io::run::{FinishedRun, RunFolder, Summary};
 
 use crate::format::{columns, count, number};
@@ -39,8 +42,8 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
         ("residual", format!("{} J{share}", number(s.energy_residual))),
         ("deepest contact", format!("{} m during the run", number(s.max_depth))),
         ("", final_depths(s)),
-        ("results", folder.path().display().to_string()),
-        ("animation", folder.path().join("motion.html").display().to_string()),
+        ("results", shown(folder.path())),
+        ("animation", shown(&folder.path().join("motion.html"))),
     ];
     rows.extend(finished.notes.iter().map(|note| ("note", note.clone())));
     let warnings = warnings(s, relative).into_iter().chain(finished.warnings.iter().cloned());
@@ -48,10 +51,16 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
     columns(&rows)
 }
 
+/// The path, in one line.
+fn shown(path: &Path) -> String {
+    on_one_line(&path.display().to_string())
+}
+
 fn bodies_of(s: &Summary) -> String {
     let plural = if s.bodies == 1 { "body" } else { "bodies" };
     let particles = if s.particles == 1 { "particle" } else { "particles" };
-    format!("{}, {} {plural}, {} {particles}", s.scene, s.bodies, count(s.particles))
+    let name = on_one_line(&s.scene);
+    format!("{name}, {} {plural}, {} {particles}", s.bodies, count(s.particles))
 }
 
 fn integrator(s: &Summary) -> String {

@@ -39,7 +39,7 @@ pub struct RunArgs {
 pub fn run(args: &RunArgs) -> Result<(), Failure> {
     let loaded = load(args)?;
     for load in tumble::static_loads(loaded.world.model(), loaded.world.state()) {
-        eprintln!("warning: {load}");
+        print_error(&format!("warning: {load}"));
     }
     let name = loaded.scene.name.clone();
     let folder = match &args.out {

@@ -302,3 +302,39 @@ fn crlf_and_byte_order_mark_are_accepted() {
     let message = dir.rejected("\u{feff}dt = 0\r\n", &[]);
     assert_contains(&message, &["s.toml:1:6"]);
 }
+
+#[test]
+fn a_misspelt_table_is_the_only_problem() {
+    let dir = TestDir::new();
+    for (table, meant) in [
+        ("[[bodi]]\nshape = \"sphere\"\nmass = 2", "body"),
+        ("[[bodies]]\nshape = \"sphere\"", "body"),
+        ("[[Body]]\nshape = \"sphere\"", "body"),
+        ("[[object]]\nmesh = \"no such file.obj\"", "body"),
+        ("[bodi]\nshape = \"sphere\"", "body"),
+        ("[colision]\nrestitution = 0.5\n[[body]]\nshape = \"sphere\"", "collision"),
+        ("[outptu]\ninterval = 0.1\n[[body]]\nshape = \"sphere\"", "output"),
+        ("[[wal]]\nnormal = [0, 1, 0]\n[[body]]\nshape = \"sphere\"", "wall"),
+        ("[boxx]\nmin = [-1, -1, -1]\n[[body]]\nshape = \"sphere\"", "box"),
+        ("[[wall]]\nnormla = [0, 1, 0]\n[[body]]\nshape = \"sphere\"", "normal"),
+        ("[box]\nminn = [-1, -1, -1]\nmax = [1, 1, 1]\n[[body]]\nshape = \"sphere\"", "min"),
+    ] {
+        let message = dir.rejected(table, &[]);
+        assert_contains(&message, &["is not a known key", &format!("did you mean `{meant}`?")]);
+        assert_eq!(message.matches("error: ").count(), 1, "{message}");
+    }
+    // one misspelling does not hide what else is missing
+    let message = dir.rejected("[box]\nminn = [0, 0, 0]\n[[wal]]\nnormal = [0, 1, 0]\n", &[]);
+    assert_contains(&message, &["has no body", "mean `min`?", "`box.max` is missing", "`wall`?"]);
+    assert_eq!(message.matches("error: ").count(), 4, "{message}");
+}
+
+#[test]
+fn a_duration_below_the_step_names_both() {
+    let dir = TestDir::new();
+    for line in ["dt = 0.1\nduration = 0.01", "duration = 1e-5"] {
+        let message = dir.rejected(format!("{line}\n{BODY}"), &[]);
+        assert_contains(&message, &["`duration` leads to no step", "`dt`"]);
+        assert_eq!(message.matches("error: ").count(), 1, "{message}");
+    }
+}

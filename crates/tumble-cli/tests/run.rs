@@ -258,7 +258,7 @@ fn invalid_command_lines_are_status_2() {
         (&["run", "task1", "--set", "durration=1"], &["--set:1:1", "`durration`", "`duration`"]),
         (
             &["run", "task1", "--set", "body.7.scale=1"],
-            &["--set:1:1", "no number 7", "there are 1"],
+            &["--set:1:1", "no number 7", "the array has 1 entry"],
         ),
         (&["run", "task1", "--set", "dt.x=1"], &["--set:1:1", "`x` cannot be set inside a number"]),
         (

@@ -9,6 +9,9 @@ mod new_file;
 pub mod page;
 pub mod picture;
 pub mod plot;
+mod printable;
 pub mod replay;
 pub mod run;
 pub mod scene;
+
+pub use printable::{on_one_line, printable};

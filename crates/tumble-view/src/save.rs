@@ -1,6 +1,7 @@
 //! The present state, written as a scene file.
 
 use tumble::{Prescribed, World};
+use tumble_io::on_one_line;
 use tumble_io::scene::{BodyScene, MotionScene, Scene};
 
 use crate::scene_edit::load;
@@ -41,7 +42,9 @@ pub fn to_toml(scene: &Scene, world: &World) -> Result<String, String> {
     let text = saved.to_toml();
     let scene_text = text.split_once('\n').map_or("", |(_, rest)| rest);
     let time = world.time();
-    let text = format!("# The scene \"{}\" as it was at t = {time} s.\n{scene_text}", scene.name);
+    // a line break in the name would end the comment
+    let name = on_one_line(&scene.name);
+    let text = format!("# The scene \"{name}\" as it was at t = {time} s.\n{scene_text}");
     load(scene, text.clone(), Vec::new())
         .map_err(|error| format!("a run cannot start from this state: {error}"))?;
     Ok(text)

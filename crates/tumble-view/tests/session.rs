@@ -276,6 +276,16 @@ fn a_saved_scene_continues_like_the_live_simulation() {
 }
 
 #[test]
+fn a_saved_scene_has_no_more_than_the_simulation_whatever_its_name() {
+    let name = "a \" \n[[body]]\nshape = 'sphere'\r\u{1b}[2J";
+    let source = Source { name: "test".to_owned(), text: SCENE.to_owned() };
+    let evil = load_text(name, source, Path::new("."), &LoadOptions::default()).unwrap();
+    let mut session = Session::new(evil).unwrap();
+    let toml = send(&mut session, "{\"type\":\"save\"}").unwrap().unwrap();
+    assert_eq!(loaded(&toml).world.body_count(), session.world().body_count());
+}
+
+#[test]
 fn every_built_in_scene_can_be_viewed_edited_and_saved() {
     for scene in tumble_io::scene::BUILTIN {
         let loaded = load_builtin(scene.name, &LoadOptions::default()).unwrap().unwrap();

@@ -52,14 +52,20 @@ pub enum StateError {
     },
 }
 
+fn bodies(count: usize) -> &'static str {
+    if count == 1 { "body" } else { "bodies" }
+}
+
 impl std::fmt::Display for StateError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::BodyCount { model, state, springs } if state == springs => {
-                write!(f, "the state is of {state} bodies, the scene has {model}")
+                let noun = bodies(*state);
+                write!(f, "the state is of {state} {noun}, the scene has {model}")
             }
             Self::BodyCount { state, springs, .. } => {
-                write!(f, "the state has {state} bodies, but friction springs of {springs}")
+                let noun = bodies(*state);
+                write!(f, "the state has {state} {noun}, but friction springs of {springs}")
             }
             Self::Time { time, expected } => {
                 write!(f, "the state's time is {time} s, but its steps take {expected} s")

@@ -91,7 +91,7 @@ fn a_state_that_does_not_fit_is_refused_and_changes_nothing() {
         assert!(error.to_string().contains(part), "{error}");
         assert_eq!(world.state().hash(), before);
     };
-    refuse(&|s| s.bodies.truncate(1), "1 bodies, but friction springs of 2");
+    refuse(&|s| s.bodies.truncate(1), "1 body, but friction springs of 2");
     refuse(&|s| *s = State::default(), "of 0 bodies, the scene has 2");
     refuse(&|s| s.time += 1.0, "its steps take");
     refuse(&|s| s.time = f64::NAN, "time");

@@ -31,8 +31,7 @@ pub(super) fn write(job: &Job, progress: &mut Progress) -> Result<Exported, Expo
         bytes += written.map_err(|error| job.write_error(error))?;
         datasets += &format!(
             "    <DataSet timestep=\"{:?}\" part=\"0\" file=\"{}/{name}\"/>\n",
-            frame.time,
-            escape(&folder.name),
+            frame.time, folder.escaped_name,
         );
     }
     write!(
@@ -47,7 +46,8 @@ pub(super) fn write(job: &Job, progress: &mut Progress) -> Result<Exported, Expo
 
 /// The folder of the `.vtp` files. It has a temporary name until it is complete.
 struct FrameFolder {
-    name: String,
+    /// Its final name, as an attribute value of XML.
+    escaped_name: String,
     path: PathBuf,
     temporary: PathBuf,
 }
@@ -61,7 +61,12 @@ impl FrameFolder {
         // with a suffix, because out/cat.pvd is often written beside the run out/cat
         let name = format!("{stem}_frames");
         let path = parent_folder(job.path).join(&name);
-        let folder = Self { name, temporary: temporary_path(&path), path };
+        let escaped_name = escape(&name).ok_or_else(|| {
+            let problem = "the name of a .pvd file must not contain control characters: it is written in XML, \
+                           which has none";
+            ExportError::Unsupported(problem.to_owned())
+        })?;
+        let folder = Self { escaped_name, temporary: temporary_path(&path), path };
         if folder.path.symlink_metadata().is_ok() {
             if !job.options.force {
                 return Err(ExportError::Exists(folder.path.clone()));
@@ -278,7 +283,19 @@ impl AppendedData {
     }
 }
 
-/// `text` as an attribute value of XML.
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+/// `text` as an attribute value of XML; `None` if it has a character that XML cannot express.
+fn escape(text: &str) -> Option<String> {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '"' => escaped.push_str("&quot;"),
+            // a reader would turn them into spaces
+            '\t' | '\n' | '\r' => escaped.push_str(&format!("&#{};", u32::from(letter))),
+            '\0'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => return None,
+            other => escaped.push(other),
+        }
+    }
+    Some(escaped)
 }

@@ -5,13 +5,14 @@
 //!
 //! Read: the triangles, strips and fans of all nodes of the scene (or of the first scene; without
 //! scenes of all nodes; without nodes all meshes as they stand), moved by the nodes' transforms in f64.
-//! Each instance of a mesh has its own vertices. Points, lines, materials and animations are ignored. Morph targets have zero
-//! weight. A skinned mesh is read in its base pose, as its vertices are stored: by the specification, the transform of its node does
-//! not apply.
+//! Each instance of a mesh has its own vertices. Points, lines, materials and animations are ignored. Morph targets displace
+//! the vertices by the weights of the node, or else of the mesh. A skinned mesh is in the pose of
+//! its joints.
 
 mod data;
 mod glb;
 mod schema;
+mod skin;
 mod support;
 
 use std::collections::BTreeMap;
@@ -26,6 +27,7 @@ use super::text::check_text;
 use crate::counted::counted;
 use data::{Buffers, error, get};
 use schema::{Document, Node, Primitive};
+use skin::Skin;
 
 /// The largest JSON part (bytes): parsed entries take much more memory than their text.
 const MAX_JSON: usize = 128 << 20;
@@ -75,8 +77,26 @@ struct Scene<'a> {
     vertices: Vec<DVec3>,
     faces: Faces,
     object_count: usize,
+    /// The parent of each node, once a skin needs them.
+    parents: Option<Vec<Option<usize>>>,
     /// Vertices, indices and primitives so far, all instances counted.
     work: usize,
+}
+
+/// What moves the vertices of an instance of a mesh.
+enum Motion {
+    Node(DAffine3),
+    Skin(Skin),
+}
+
+impl Motion {
+    /// Whether the surface is turned inside out.
+    fn is_mirrored(&self) -> bool {
+        match self {
+            Self::Node(transform) => transform.matrix3.determinant() < 0.0,
+            Self::Skin(skin) => skin.is_mirrored(),
+        }
+    }
 }
 
 impl<'a> Scene<'a> {
@@ -88,6 +108,7 @@ impl<'a> Scene<'a> {
             vertices: Vec::new(),
             faces: Faces::default(),
             object_count: 0,
+            parents: None,
             work: 0,
         }
     }
@@ -97,7 +118,7 @@ impl<'a> Scene<'a> {
         let document = self.document;
         if document.nodes.is_empty() {
             return (0..document.meshes.len())
-                .try_for_each(|mesh| self.add_mesh(mesh, DAffine3::IDENTITY));
+                .try_for_each(|mesh| self.add_mesh(mesh, None, &Motion::Node(DAffine3::IDENTITY)));
         }
         let mut seen = vec![false; document.nodes.len()];
         let roots = self.roots()?;
@@ -115,10 +136,12 @@ impl<'a> Scene<'a> {
                 )));
             }
             let transform = *parent * local_transform(node, index)?;
-            match (node.mesh, node.skin) {
-                (Some(mesh), None) => self.add_mesh(mesh as usize, transform)?,
-                (Some(mesh), Some(_)) => self.add_mesh(mesh as usize, DAffine3::IDENTITY)?,
-                (None, _) => {}
+            if let Some(mesh) = node.mesh {
+                let motion = match node.skin {
+                    Some(skin) => Motion::Skin(self.skin(skin as usize)?),
+                    None => Motion::Node(transform),
+                };
+                self.add_mesh(mesh as usize, node.weights.as_deref(), &motion)?;
             }
             levels.push((node.children.iter(), transform));
         }
@@ -139,34 +162,70 @@ impl<'a> Scene<'a> {
         Ok((0..is_child.len()).filter(|&node| !is_child[node]).collect())
     }
 
-    /// Adds an instance of a mesh.
-    fn add_mesh(&mut self, mesh: usize, transform: DAffine3) -> Result<(), ReadError> {
+    /// Adds an instance of a mesh. `weights` of its morph targets replace its own.
+    fn add_mesh(
+        &mut self,
+        mesh: usize,
+        weights: Option<&[f64]>,
+        motion: &Motion,
+    ) -> Result<(), ReadError> {
         let mesh = get(&self.document.meshes, mesh, "mesh")?;
         self.object_count += 1;
+        let weights = weights.unwrap_or(&mesh.weights);
         // primitives may share their vertices
         let mut first_of = BTreeMap::new();
         for primitive in &mesh.primitives {
-            self.charge(1)?;
+            self.charge(1 + primitive.targets.len())?;
             let Some(position) = primitive.attributes.position else { continue };
             if !(4..=6).contains(&primitive.mode) {
                 continue;
             }
-            let first = match first_of.get(&position) {
+            let morph = morph(primitive, weights);
+            let shifts: Vec<_> = morph.iter().map(|(at, weight)| (*at, weight.to_bits())).collect();
+            let key = (position, shifts, primitive.attributes.joint_sets());
+            let first = match first_of.get(&key) {
                 Some(&first) => first,
-                None => self.add_vertices(position, transform)?,
+                None => self.add_vertices(primitive, position, &morph, motion)?,
             };
-            first_of.insert(position, first);
-            self.add_faces(primitive, position, first, transform.matrix3.determinant() < 0.0)?;
+            first_of.insert(key, first);
+            self.add_faces(primitive, position, first, motion.is_mirrored())?;
         }
         Ok(())
     }
 
-    fn add_vertices(&mut self, position: usize, transform: DAffine3) -> Result<usize, ReadError> {
-        self.buffers.load(position)?;
-        self.charge(self.buffers.count(position)?)?;
+    fn add_vertices(
+        &mut self,
+        primitive: &Primitive,
+        position: usize,
+        morph: &[(usize, f64)],
+        motion: &Motion,
+    ) -> Result<usize, ReadError> {
+        let mut positions = self.positions(position)?;
+        for &(target, weight) in morph {
+            let shifts = self.positions(target)?;
+            if shifts.len() != positions.len() {
+                return Err(error(format!(
+                    "a morph target displaces {}, but its primitive has {}",
+                    counted(shifts.len(), "vertex", "vertices"),
+                    positions.len()
+                )));
+            }
+            positions.iter_mut().zip(shifts).for_each(|(point, shift)| *point += weight * shift);
+        }
+        match motion {
+            Motion::Node(transform) => {
+                positions.iter_mut().for_each(|point| *point = transform.transform_point3(*point));
+            }
+            Motion::Skin(skin) => {
+                let sets = primitive.attributes.joint_sets();
+                for accessor in sets.iter().flat_map(|(joints, weights)| [*joints, *weights]) {
+                    self.charge(self.buffers.count(accessor)?)?;
+                }
+                skin.apply(&mut self.buffers, &primitive.attributes, &mut positions)?;
+            }
+        }
         let first = self.vertices.len();
-        for vertex in self.buffers.positions(position)? {
-            let vertex = transform.transform_point3(vertex);
+        for vertex in positions {
             if !vertex.is_finite() {
                 return Err(error("a vertex becomes infinite by the transforms of its nodes"));
             }
@@ -176,6 +235,29 @@ impl<'a> Scene<'a> {
             return Err(error("the scene has more than 4,294,967,295 vertices"));
         }
         Ok(first)
+    }
+
+    /// A skin, in the pose of its joints.
+    fn skin(&mut self, index: usize) -> Result<Skin, ReadError> {
+        let parents = match self.parents.take() {
+            Some(parents) => parents,
+            None => skin::parents(self.document)?,
+        };
+        let mut work = self.work;
+        let limit = self.limit();
+        let skin = Skin::new(self.document, &mut self.buffers, &parents, index, |more| {
+            work = work.saturating_add(more);
+            if work > limit { Err(too_much(limit)) } else { Ok(()) }
+        });
+        (self.work, self.parents) = (work, Some(parents));
+        skin
+    }
+
+    /// The vectors of an accessor.
+    fn positions(&mut self, accessor: usize) -> Result<Vec<DVec3>, ReadError> {
+        self.buffers.load(accessor)?;
+        self.charge(self.buffers.count(accessor)?)?;
+        self.buffers.positions(accessor)
     }
 
     fn add_faces(
@@ -208,8 +290,8 @@ impl<'a> Scene<'a> {
         match primitive.mode {
             4 if !corners.len().is_multiple_of(3) => {
                 return Err(error(format!(
-                    "a primitive of triangles has {} corners, which is no multiple of 3",
-                    corners.len()
+                    "a primitive of triangles has {}, which is no multiple of 3",
+                    counted(corners.len(), "corner", "corners")
                 )));
             }
             4 => corners.chunks_exact(3).for_each(|triangle| self.faces.push(triangle)),
@@ -227,13 +309,11 @@ impl<'a> Scene<'a> {
     /// Counts work against a limit in proportion to the file size, since instances multiply the data.
     fn charge(&mut self, work: usize) -> Result<(), ReadError> {
         self.work = self.work.saturating_add(work);
-        let limit = (2 * (self.file_length + self.buffers.side_bytes())).max(1_000_000);
-        if self.work > limit {
-            return Err(error(format!(
-                "with all instances, the file has more than {limit} vertices and indices, out of proportion to its size: its counts are wrong, or it has too many instances"
-            )));
-        }
-        Ok(())
+        if self.work > self.limit() { Err(too_much(self.limit())) } else { Ok(()) }
+    }
+
+    fn limit(&self) -> usize {
+        (2 * (self.file_length + self.buffers.side_bytes())).max(1_000_000)
     }
 
     fn finish(self) -> Result<Parsed, ReadError> {
@@ -252,6 +332,21 @@ impl<'a> Scene<'a> {
             side_files: self.buffers.into_side_names(),
         })
     }
+}
+
+fn too_much(limit: usize) -> ReadError {
+    error(format!(
+        "with all instances, the file has more than {limit} vertices and indices, out of proportion to its size: its counts are wrong, or it has too many instances"
+    ))
+}
+
+/// The accessors of the displacements of a primitive and their weights, without those that are zero.
+fn morph(primitive: &Primitive, weights: &[f64]) -> Vec<(usize, f64)> {
+    let targets = primitive.targets.iter().zip(weights);
+    targets
+        .filter(|(_, weight)| **weight != 0.0)
+        .filter_map(|(target, weight)| Some((target.position?, *weight)))
+        .collect()
 }
 
 /// The transform of a node relative to its parent.

@@ -110,8 +110,8 @@ impl<'a> Reader<'a> {
         }
         if self.corners.len() < 3 {
             return Err(self.words.line_error(format!(
-                "the face has {} corners; 3 or more are needed (use `l` for lines and `p` for points)",
-                self.corners.len()
+                "the face has {}; 3 or more are needed (use `l` for lines and `p` for points)",
+                counted(self.corners.len(), "corner", "corners")
             )));
         }
         self.faces.push(&self.corners);

@@ -16,6 +16,7 @@ use super::error::{Place, ReadError};
 use super::parsed::Parsed;
 use super::polygon::Faces;
 use super::text::{Style, Words};
+use crate::counted::counted;
 
 /// Reads the bytes of a PLY file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
@@ -167,8 +168,8 @@ impl BinarySource<'_> {
         }
         self.value_at = self.at;
         Err(self.error(format!(
-            "{} bytes follow the last element that the header promises: its counts are wrong, or something else was appended",
-            rest.len()
+            "{} the last element that the header promises: its counts are wrong, or something else was appended",
+            counted(rest.len(), "byte follows", "bytes follow")
         )))
     }
 }
@@ -300,8 +301,8 @@ impl MeshCollector {
             }
             b"face" if self.corners.len() < 3 => {
                 return Err(source.error(format!(
-                    "the face has {} corners; 3 or more are needed",
-                    self.corners.len()
+                    "the face has {}; 3 or more are needed",
+                    counted(self.corners.len(), "corner", "corners")
                 )));
             }
             b"face" => self.faces.push(&self.corners),

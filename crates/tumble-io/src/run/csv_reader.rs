@@ -1,5 +1,6 @@
 //! Reads and parses the rows of a run's CSV files.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
@@ -128,19 +129,39 @@ pub(crate) fn parse_energy(row: &str, columns: EnergyColumns) -> Option<EnergyRo
 }
 
 /// Parses a row of `trajectory.csv`: time (s), name of the body, and 16 numbers.
-pub(crate) fn parse_trajectory(row: &str) -> Option<(f64, &str, [f64; 16])> {
+pub(crate) fn parse_trajectory(row: &str) -> Option<(f64, Cow<'_, str>, [f64; 16])> {
     parse_body_row(row)
 }
 
 /// Parses a row of `contacts.csv`: time (s), name of the body, force (N) and torque (N·m).
-pub(crate) fn parse_contact(row: &str) -> Option<(f64, &str, [f64; 6])> {
+pub(crate) fn parse_contact(row: &str) -> Option<(f64, Cow<'_, str>, [f64; 6])> {
     parse_body_row(row)
 }
 
-fn parse_body_row<const N: usize>(row: &str) -> Option<(f64, &str, [f64; N])> {
+fn parse_body_row<const N: usize>(row: &str) -> Option<(f64, Cow<'_, str>, [f64; N])> {
     let (time, rest) = row.split_once(',')?;
-    let (body, rest) = rest.split_once(',')?;
+    let (body, rest) = split_text(rest)?;
     Some((time.parse().ok()?, body, parse_numbers(rest)?))
+}
+
+/// The field of text at the start of `row` without its quotes (RFC 4180), and what follows its comma.
+fn split_text(row: &str) -> Option<(Cow<'_, str>, &str)> {
+    let Some(quoted) = row.strip_prefix('"') else {
+        let (text, rest) = row.split_once(',')?;
+        return Some((Cow::Borrowed(text), rest));
+    };
+    let bytes = quoted.as_bytes();
+    let mut end = 0;
+    while let Some(at) = quoted[end..].find('"') {
+        end += at;
+        // a doubled quote stands for one within the text
+        if bytes.get(end + 1) != Some(&b'"') {
+            let rest = quoted[end + 1..].strip_prefix(',')?;
+            return Some((Cow::Owned(quoted[..end].replace("\"\"", "\"")), rest));
+        }
+        end += 2;
+    }
+    None
 }
 
 /// Parses exactly `N` numbers separated by commas.

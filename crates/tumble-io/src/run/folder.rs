@@ -153,13 +153,15 @@ impl RunFolder {
     }
 
     /// Creates the first of `parent/name`, `parent/name-2`, `parent/name-3`, … that holds no run.
+    /// A name that would lead out of `parent` is changed.
     ///
     /// # Errors
     /// [`RunError::CreateFolder`] or [`RunError::Write`].
     pub fn create_next(parent: &Path, name: &str) -> Result<Self, RunError> {
+        let name = one_component(name);
         let mut number = 1u32;
         loop {
-            let name = if number == 1 { name.to_owned() } else { format!("{name}-{number}") };
+            let name = if number == 1 { name.clone() } else { format!("{name}-{number}") };
             let path = parent.join(name);
             // skip the name of a file as well
             if path.exists() && !path.is_dir() {
@@ -236,4 +238,10 @@ impl RunFolder {
             RunError::Write(path, error)
         })
     }
+}
+
+/// The name as that of one folder in another: `..toml` is a file whose name without extension is a dot.
+fn one_component(name: &str) -> String {
+    let name = name.replace(['/', '\\', '\0'], "_");
+    if name.trim_matches('.').is_empty() { format!("scene{name}") } else { name }
 }

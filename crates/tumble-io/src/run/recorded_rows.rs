@@ -156,5 +156,5 @@ impl ContactReader {
 fn parse_wrench(row: &str) -> Option<(f64, String, Wrench)> {
     let (time, body, [fx, fy, fz, tx, ty, tz]) = parse_contact(row)?;
     let (force, torque) = (DVec3::new(fx, fy, fz), DVec3::new(tx, ty, tz));
-    Some((time, body.to_owned(), Wrench { force, torque }))
+    Some((time, body.into_owned(), Wrench { force, torque }))
 }

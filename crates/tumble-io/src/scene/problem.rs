@@ -7,6 +7,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 
 use super::place::{Place, Source};
 use crate::counted::counted;
+use crate::printable::{on_one_line, printable};
 
 /// The largest number of problems shown; others are counted.
 const MAX_SHOWN: usize = 100;
@@ -93,14 +94,14 @@ impl SceneError {
                 Level::ERROR.primary_title(title).element(
                     Snippet::source(line)
                         .line_start(number)
-                        .path(source.name.as_str())
+                        .path(on_one_line(&source.name))
                         .annotation(AnnotationKind::Primary.span(within)),
                 )
             }
             None => Group::with_title(Level::ERROR.primary_title(title)),
         };
         match &problem.help {
-            Some(help) => group.element(Level::HELP.message(help.as_str())),
+            Some(help) => group.element(Level::HELP.message(printable(help))),
             None => group,
         }
     }
@@ -123,12 +124,9 @@ fn on_characters(text: &str, span: Range<usize>) -> Range<usize> {
 
 /// At most `most` characters of a text that may come from the file, none of them a control.
 fn cut(text: &str, most: usize) -> String {
-    let plain = |c: char| if c.is_control() && c != '\n' { char::REPLACEMENT_CHARACTER } else { c };
-    let mut cut: String = text.chars().take(most).map(plain).collect();
-    if text.chars().nth(most).is_some() {
-        cut.push('…');
-    }
-    cut
+    let start = text.char_indices().nth(most).map_or(text, |(end, _)| &text[..end]);
+    let more = if start.len() < text.len() { "…" } else { "" };
+    printable(start) + more
 }
 
 /// The line in which a span lies, its number from 1, and the span within it. Only this line goes

@@ -54,6 +54,8 @@ pub struct Reader<'a> {
     place: Place,
     path: String,
     requested: RefCell<Vec<&'static str>>,
+    /// Keys that are needed and not given, each with its problem.
+    missing: RefCell<Vec<(&'static str, Problem)>>,
     problems: &'a RefCell<Vec<Problem>>,
 }
 
@@ -69,8 +71,8 @@ impl<'a> Reader<'a> {
             }
         };
         let is_table = matches!(node.value, Value::Table(_));
-        let (place, requested) = (node.place.clone(), RefCell::default());
-        Self { is_table, entries, place, path, requested, problems }
+        let (requested, missing) = (RefCell::default(), RefCell::default());
+        Self { is_table, entries, place: node.place.clone(), path, requested, missing, problems }
     }
 
     /// The dotted name of one of its keys.
@@ -92,6 +94,14 @@ impl<'a> Reader<'a> {
     /// Reports a problem.
     pub fn report(&self, problem: Problem) {
         self.problems.borrow_mut().push(problem);
+    }
+
+    /// Reports that a key is needed, unless [`finish`](Self::finish) finds a misspelling of it, which is then the
+    /// only problem.
+    pub fn missing(&self, key: &'static str, problem: Problem) {
+        if self.is_table {
+            self.missing.borrow_mut().push((key, problem));
+        }
     }
 
     /// The place of the value of a key, or of the table if the key is not given.
@@ -318,21 +328,26 @@ impl<'a> Reader<'a> {
         given.first().copied()
     }
 
-    /// Reports the keys that were not requested.
+    /// Reports the keys that were not requested, and those that are missing.
     pub fn finish(self) {
         let requested = self.requested.borrow();
+        let mut missing = self.missing.take();
         for entry in self.entries.iter().filter(|entry| !requested.contains(&entry.key.as_str())) {
             let mut known: Vec<&str> = requested.clone();
             known.sort_unstable();
             known.dedup();
             let help = match meant(&entry.key, &known) {
-                Some(near) => format!("did you mean `{near}`?"),
+                Some(near) => {
+                    missing.retain(|(key, _)| *key != near);
+                    format!("did you mean `{near}`?")
+                }
                 None => format!("known here: {}", quoted_keys(&known)),
             };
             let problem =
                 Problem::new(entry.place.clone(), self.key(&entry.key), "is not a known key");
             self.report(problem.help(help));
         }
+        missing.into_iter().for_each(|(_, problem)| self.report(problem));
     }
 
     fn wrong_type(&self, key: &str, node: &Node, wanted: &str) {
@@ -362,7 +377,7 @@ fn numbers<const N: usize>(node: &Node) -> Option<[f64; N]> {
 }
 
 /// Names in other programs, and the names of the keys here.
-const ALIASES: [(&str, &str); 22] = [
+const ALIASES: [(&str, &str); 26] = [
     ("friction", "friction_stiffness"),
     ("mu", "friction_stiffness"),
     ("friction_coefficient", "friction_stiffness"),
@@ -385,6 +400,10 @@ const ALIASES: [(&str, &str); 22] = [
     ("file", "mesh"),
     ("e", "restitution"),
     ("time", "duration"),
+    ("object", "body"),
+    ("objects", "body"),
+    ("plane", "wall"),
+    ("floor", "wall"),
 ];
 
 /// The known word for which `word` is an alias, or else the most similar one.

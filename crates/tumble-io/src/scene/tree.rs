@@ -5,6 +5,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::place::Place;
 use super::problem::Problem;
+use crate::counted::counted;
 
 /// Groups of keys of which a table may have only one. `--set` of one removes the others.
 pub const EXCLUSIVE_KEYS: [&[&str]; 3] = [
@@ -188,7 +189,8 @@ fn assign(target: &mut Node, path: &[&str], new: &Node, place: &Place) -> Result
                 match items.get_mut(index) {
                     Some(item) => assign(item, rest, new, place),
                     None => Err(format!(
-                        "there is no number {index} here; there are {count}, counted from 0"
+                        "there is no number {index} here: the array has {}, counted from 0",
+                        counted(count, "entry", "entries")
                     )),
                 }
             }

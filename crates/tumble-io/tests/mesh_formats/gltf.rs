@@ -67,8 +67,90 @@ fn all_meshes_and_primitives_of_a_scene_are_read() {
 
 #[test]
 fn the_transform_of_a_skinned_node_is_ignored() {
-    let file = parse_with_nodes(r#"{"mesh":0,"skin":0,"translation":[10,0,0]}"#);
+    let nodes = r#"{"mesh":0,"skin":0,"translation":[10,0,0]}"#;
+    let skins = r#","skins":[{"joints":[0]}]"#;
+    let json = gltf_json(&data_uri(), nodes, skins);
+    // without joints its vertices stay as they are
+    let file = super::parse_valid(Format::Gltf, json.as_bytes());
     assert_eq!(file.mesh.vertices[1], v(1.5, 0.0, 0.0));
+    assert_contains(&parse_invalid(&json.replace(skins, "")), &["refers to skin 0"]);
+}
+
+/// A tetrahedron of volume 1/6. Corners 0 and 1 follow node 1, which has the scale 2; corner 3 follows its child, whose bind matrix
+/// undoes its translation by (1, 0, 0); corner 2 follows both.
+fn skinned(child: &str) -> String {
+    let mut data: Vec<u8> = Vec::new();
+    let points = [[0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    data.extend(points.iter().flatten().flat_map(|x| x.to_le_bytes()));
+    data.extend([0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0]);
+    data.extend([255, 0, 0, 0, 255, 0, 0, 0, 128, 127, 0, 0, 255, 0, 0, 0]);
+    let identity = [1f32, 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.];
+    let mut back = identity;
+    back[12] = -1.0;
+    data.extend([identity, back].iter().flatten().flat_map(|x| x.to_le_bytes()));
+    data.extend([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]);
+    let length = data.len();
+    let encoded = base64::Engine::encode(&base64::engine::general_purpose::STANDARD, &data);
+    format!(
+        r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0,1]}}],
+"nodes":[{{"mesh":0,"skin":0,"translation":[9,9,9]}},{{"scale":[2,2,2],"children":[2]}},{child}],
+"skins":[{{"joints":[1,2],"inverseBindMatrices":3}}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2}},"indices":4}}]}}],
+"accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}},
+{{"bufferView":1,"componentType":5121,"count":4,"type":"VEC4"}},
+{{"bufferView":2,"componentType":5121,"normalized":true,"count":4,"type":"VEC4"}},
+{{"bufferView":3,"componentType":5126,"count":2,"type":"MAT4"}},
+{{"bufferView":4,"componentType":5121,"count":12,"type":"SCALAR"}}],
+"bufferViews":[{{"buffer":0,"byteLength":48}},{{"buffer":0,"byteOffset":48,"byteLength":16}},
+{{"buffer":0,"byteOffset":64,"byteLength":16}},{{"buffer":0,"byteOffset":80,"byteLength":128}},
+{{"buffer":0,"byteOffset":208,"byteLength":12}}],
+"buffers":[{{"byteLength":{length},"uri":"data:application/octet-stream;base64,{encoded}"}}]}}"#
+    )
+}
+
+#[test]
+fn a_skinned_mesh_is_in_the_pose_of_its_joints() {
+    let parse = |json: &str| super::parse_valid(Format::Gltf, json.as_bytes());
+    // the child is where it was bound: the scale of its parent moves all
+    let bound = parse(&skinned(r#"{"translation":[1,0,0]}"#));
+    let doubled = [v(0.0, 0.0, 0.0), v(2.0, 0.0, 0.0), v(0.0, 2.0, 0.0), v(0.0, 0.0, 2.0)];
+    assert_eq!(bound.mesh.vertices, doubled);
+    // 3 more along x, which the scale doubles; corner 2 follows by the part 127/255
+    let moved = parse(&skinned(r#"{"translation":[4,0,0]}"#));
+    assert_eq!(moved.mesh.vertices[3], v(6.0, 0.0, 2.0));
+    assert!((moved.mesh.vertices[2] - v(6.0 * 127.0 / 255.0, 2.0, 0.0)).length() < 1e-12);
+    assert_eq!(moved.mesh.vertices[..2], doubled[..2]);
+    // a mirrored skeleton keeps the surface outside
+    let mirrored = parse(&skinned(r#"{"translation":[1,0,0]}"#).replace("[2,2,2]", "[-2,2,2]"));
+    let volumes = [&bound, &mirrored].map(|file| area_and_volume(file).1);
+    assert!(volumes.iter().all(|volume| (volume / 6.0 - 8.0 / 6.0).abs() < 1e-12), "{volumes:?}");
+}
+
+#[test]
+fn broken_skins_are_rejected() {
+    let whole = skinned(r#"{"translation":[1,0,0]}"#);
+    let message = |from: &str, to: &str| {
+        assert!(whole.contains(from), "{from}");
+        parse_invalid(&whole.replacen(from, to, 1))
+    };
+    assert_contains(&message("[1,2],", "[1],"), &["refers to joint 1"]);
+    assert_contains(&message("[1,2],", "[1,7],"), &["refers to node 7"]);
+    assert_contains(&message("[1,2],", "[1,2,1],"), &["fewer inverse bind matrices than joints"]);
+    assert_contains(&message("\"count\":2", "\"count\":1"), &["fewer inverse bind matrices"]);
+    assert_contains(&message("JOINTS_0\":1", "JOINTS_0\":0"), &["joints", "type VEC4"]);
+    assert_contains(
+        &message("5121,\"count\":4,\"type\":\"VEC4\"", "5121,\"count\":3,\"type\":\"VEC4\""),
+        &["as many as the vertices"],
+    );
+    assert_contains(&message("\"WEIGHTS_0\":2", "\"WEIGHTS_0\":1"), &["has no weights"]);
+    assert_contains(&message("\"skin\":0", "\"skin\":1"), &["refers to skin 1"]);
+    // a skeleton outside of the scene that is its own ancestor
+    let cycle = whole.replacen(r#""nodes":[0,1]"#, r#""nodes":[0]"#, 1).replacen(
+        r#"{"translation":[1,0,0]}"#,
+        r#"{"children":[1]}"#,
+        1,
+    );
+    assert_contains(&parse_invalid(&cycle), &["out of proportion"]);
 }
 
 #[test]
@@ -145,6 +227,46 @@ fn sparse_quantised_and_interleaved_positions_are_read() {
 }
 
 #[test]
+fn morph_targets_displace_vertices_by_the_weights_of_the_node_or_mesh() {
+    let primitive = r#"{"attributes":{"POSITION":0},"indices":1}"#;
+    // the displacements are the positions themselves: weights w scale the tetrahedron by 1 + Σ w
+    let with_targets = |weights: &str, node: &str, more: &str| {
+        let morphed = r#"{"attributes":{"POSITION":0},"indices":1,"targets":[{"POSITION":0},{"NORMAL":9},{"POSITION":0}]}"#;
+        let json = gltf_json(&data_uri(), node, "");
+        assert!(json.contains(primitive));
+        json.replacen(primitive, &format!("{morphed}{more}"), 1).replacen(
+            r#""meshes":[{"#,
+            &format!(r#""meshes":[{{{weights}"#),
+            1,
+        )
+    };
+    let volume =
+        |json: &str| area_and_volume(&super::parse_valid(Format::Gltf, json.as_bytes())).1 / 0.75;
+    let plain = r#"{"mesh":0}"#;
+    assert_eq!(volume(&with_targets("", plain, "")), 1.0);
+    assert_eq!(volume(&with_targets(r#""weights":[0,0,0],"#, plain, "")), 1.0);
+    assert_eq!(volume(&with_targets(r#""weights":[1,5,0],"#, plain, "")), 8.0);
+    assert_eq!(volume(&with_targets(r#""weights":[0.75,5,0.25],"#, plain, "")), 8.0);
+    let own = r#"{"mesh":0,"weights":[0,0,0.5]}"#;
+    assert_eq!(volume(&with_targets(r#""weights":[1,5,0],"#, own, "")), 3.375);
+    // a second primitive without targets does not share the displaced vertices
+    let two = with_targets(r#""weights":[1,5,0],"#, plain, &format!(",{primitive}"));
+    assert_eq!(volume(&two), 9.0);
+    // as many displacements as vertices
+    let fewer = r#""SCALAR"},{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}"#;
+    let json = with_targets(r#""weights":[1],"#, plain, "")
+        .replacen(r#""targets":[{"POSITION":0}"#, r#""targets":[{"POSITION":2}"#, 1)
+        .replacen(r#""SCALAR"}"#, fewer, 1);
+    assert_contains(&parse_invalid(&json), &["displaces 3 vertices", "its primitive has 4"]);
+    let message = parse_invalid(&with_targets(r#""weights":[1],"#, plain, "").replacen(
+        r#""targets":[{"POSITION":0}"#,
+        r#""targets":[{"POSITION":1}"#,
+        1,
+    ));
+    assert_contains(&message, &["accessor 1 holds POSITION and must be of type VEC3"]);
+}
+
+#[test]
 fn side_files_outside_the_folder_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let inner = folder.path().join("inner");
@@ -210,6 +332,14 @@ fn excessive_instancing_is_rejected() {
     let json = gltf_json(&data_uri(), &nodes, "").replace(
         r#"{"attributes":{"POSITION":0},"indices":1}"#,
         &primitives.replace("}}", r#"},"mode":6}"#),
+    );
+    assert_contains(&parse_invalid(&json), &["out of proportion"]);
+    // nor does a primitive of as many morph targets
+    let targets = vec!["{}"; 2_000].join(",");
+    let json = gltf_json(&data_uri(), &nodes, "").replacen(
+        r#""indices":1"#,
+        &format!(r#""indices":1,"targets":[{targets}]"#),
+        1,
     );
     assert_contains(&parse_invalid(&json), &["out of proportion"]);
     // a sparse accessor without a base buffer
@@ -288,7 +418,7 @@ fn out_of_range_references_are_rejected() {
     );
     assert_contains(
         &parse_invalid_with(r#""count":4"#, r#""byteOffset":18446744073709551615,"count":4"#),
-        &["reach beyond"],
+        &["with 4 elements reaches beyond"],
     );
     assert_contains(
         &parse_invalid_with(r#""count":4"#, r#""count":2"#),

@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::super::error::ReadError;
 use super::super::file;
 use super::schema::{Accessor, Document, Kind, Sparse, SparsePart};
+use crate::counted::counted;
 
 /// The buffers of a document. Each is loaded when it is first needed, a file once.
 pub(super) struct Buffers<'a> {
@@ -115,23 +116,8 @@ impl<'a> Buffers<'a> {
 
     /// The positions of an accessor whose buffers are loaded.
     pub(super) fn positions(&self, index: usize) -> Result<Vec<DVec3>, ReadError> {
-        let accessor = self.accessor(index)?;
-        if accessor.kind != Kind::Vec3 {
-            return Err(error(format!("accessor {index} holds POSITION and must be of type VEC3")));
-        }
-        let dense = self.dense(accessor, 3, index)?;
-        let mut positions = match &dense {
-            Some(elements) => (0..accessor.count).map(|i| elements.vector(i)).collect(),
-            None => vec![DVec3::ZERO; accessor.count],
-        };
-        if let Some(sparse) = &accessor.sparse {
-            let (places, values) = self.sparse(accessor, sparse, 3, index)?;
-            for i in 0..sparse.count {
-                let place = places.integer(i) as usize;
-                *positions.get_mut(place).ok_or_else(|| bad_sparse(index, place))? =
-                    values.vector(i);
-            }
-        }
+        let rows = self.rows::<3>(index, "POSITION")?;
+        let positions: Vec<DVec3> = rows.into_iter().map(DVec3::from_array).collect();
         match positions.iter().position(|p| !p.is_finite()) {
             None => Ok(positions),
             Some(i) => {
@@ -139,6 +125,36 @@ impl<'a> Buffers<'a> {
                 Err(error(format!("position {i} of accessor {index} is {what}; it must be finite")))
             }
         }
+    }
+
+    /// The elements of an accessor whose buffers are loaded, of `W` components each. `what` they are is for messages.
+    pub(super) fn rows<const W: usize>(
+        &self,
+        index: usize,
+        what: &str,
+    ) -> Result<Vec<[f64; W]>, ReadError> {
+        let accessor = self.accessor(index)?;
+        let (kind, name) = match W {
+            3 => (Kind::Vec3, "VEC3"),
+            4 => (Kind::Vec4, "VEC4"),
+            _ => (Kind::Mat4, "MAT4"),
+        };
+        if accessor.kind != kind {
+            return Err(error(format!("accessor {index} holds {what} and must be of type {name}")));
+        }
+        let dense = self.dense(accessor, W, index)?;
+        let mut rows = match &dense {
+            Some(elements) => (0..accessor.count).map(|i| elements.row(i)).collect(),
+            None => vec![[0.0; W]; accessor.count],
+        };
+        if let Some(sparse) = &accessor.sparse {
+            let (places, values) = self.sparse(accessor, sparse, W, index)?;
+            for i in 0..sparse.count {
+                let place = places.integer(i) as usize;
+                *rows.get_mut(place).ok_or_else(|| bad_sparse(index, place))? = values.row(i);
+            }
+        }
+        Ok(rows)
     }
 
     /// The vertex indices of an accessor whose buffers are loaded.
@@ -234,9 +250,9 @@ impl<'a> Buffers<'a> {
             .and_then(|end| bytes.get(view.byte_offset..end))
             .ok_or_else(|| {
                 error(format!(
-                    "bufferView {} reaches beyond the {} bytes of buffer {}",
+                    "bufferView {} reaches beyond the {} of buffer {}",
                     part.buffer_view,
-                    bytes.len(),
+                    counted(bytes.len(), "byte", "bytes"),
                     view.buffer
                 ))
             })?;
@@ -244,8 +260,9 @@ impl<'a> Buffers<'a> {
         let stride = view.byte_stride.unwrap_or(size);
         if stride < size {
             return Err(error(format!(
-                "bufferView {} has a byteStride of {stride}, but each element takes {size} bytes",
-                part.buffer_view
+                "bufferView {} has a byteStride of {stride}, but each element takes {}",
+                part.buffer_view,
+                counted(size, "byte", "bytes")
             )));
         }
         let needed = count.saturating_sub(1).checked_mul(stride).and_then(|n| n.checked_add(size));
@@ -255,8 +272,10 @@ impl<'a> Buffers<'a> {
             .map(|bytes| Elements { bytes, stride, component, normalized: false })
             .ok_or_else(|| {
                 error(format!(
-                    "an accessor promises {count} elements, which reach beyond the {} bytes of bufferView {}",
-                    view.byte_length, part.buffer_view
+                    "an accessor with {} reaches beyond the {} of bufferView {}",
+                    counted(count, "element", "elements"),
+                    counted(view.byte_length, "byte", "bytes"),
+                    part.buffer_view
                 ))
             })
     }
@@ -326,8 +345,8 @@ impl Elements<'_> {
         }
     }
 
-    fn vector(&self, i: usize) -> DVec3 {
-        DVec3::from_array([0, 1, 2].map(|k| self.number(i, k)))
+    fn row<const W: usize>(&self, i: usize) -> [f64; W] {
+        std::array::from_fn(|k| self.number(i, k))
     }
 
     /// A component as a number; normalised integers are fractions (KHR_mesh_quantization).

@@ -22,6 +22,8 @@ pub(super) struct Document<'a> {
     #[serde(default)]
     pub(super) meshes: Vec<MeshEntry>,
     #[serde(default)]
+    pub(super) skins: Vec<SkinEntry>,
+    #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
     #[serde(default)]
     pub(super) buffer_views: Vec<BufferView>,
@@ -52,12 +54,26 @@ pub(super) struct Node {
     /// A quaternion x, y, z, w.
     pub(super) rotation: Option<Box<[f64; 4]>>,
     pub(super) scale: Option<Box<[f64; 3]>>,
+    /// Weights of morph targets, in place of those of the mesh.
+    pub(super) weights: Option<Box<[f64]>>,
 }
 
 #[derive(Deserialize)]
 pub(super) struct MeshEntry {
     #[serde(default)]
     pub(super) primitives: Vec<Primitive>,
+    /// Weights of the morph targets.
+    #[serde(default)]
+    pub(super) weights: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SkinEntry {
+    pub(super) inverse_bind_matrices: Option<usize>,
+    /// The nodes that are joints.
+    #[serde(default)]
+    pub(super) joints: Vec<usize>,
 }
 
 #[derive(Deserialize)]
@@ -66,6 +82,9 @@ pub(super) struct Primitive {
     pub(super) indices: Option<usize>,
     #[serde(default = "triangles")]
     pub(super) mode: u32,
+    /// Morph targets: displacements of the attributes.
+    #[serde(default)]
+    pub(super) targets: Vec<Attributes>,
 }
 
 fn triangles() -> u32 {
@@ -76,6 +95,22 @@ fn triangles() -> u32 {
 pub(super) struct Attributes {
     #[serde(rename = "POSITION")]
     pub(super) position: Option<usize>,
+    #[serde(rename = "JOINTS_0")]
+    joints_0: Option<usize>,
+    #[serde(rename = "WEIGHTS_0")]
+    weights_0: Option<usize>,
+    #[serde(rename = "JOINTS_1")]
+    joints_1: Option<usize>,
+    #[serde(rename = "WEIGHTS_1")]
+    weights_1: Option<usize>,
+}
+
+impl Attributes {
+    /// Accessors of joints and their weights, four for each vertex.
+    pub(super) fn joint_sets(&self) -> Vec<(usize, usize)> {
+        let sets = [(self.joints_0, self.weights_0), (self.joints_1, self.weights_1)];
+        sets.into_iter().filter_map(|(joints, weights)| joints.zip(weights)).collect()
+    }
 }
 
 #[derive(Deserialize)]
@@ -99,6 +134,10 @@ pub(super) enum Kind {
     Scalar,
     #[serde(rename = "VEC3")]
     Vec3,
+    #[serde(rename = "VEC4")]
+    Vec4,
+    #[serde(rename = "MAT4")]
+    Mat4,
     #[serde(other)]
     Other,
 }

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::super::error::{Place, ReadError};
 use super::super::parsed::Parsed;
 use super::Soup;
+use crate::counted::counted;
 
 /// Bytes before the first triangle: 80 of header, 4 of count.
 const HEADER: usize = 84;
@@ -21,9 +22,9 @@ pub(super) fn fits(bytes: &[u8]) -> bool {
 /// Reads the bytes of a binary file.
 pub(super) fn parse(bytes: &[u8]) -> Result<Parsed, ReadError> {
     let Some(declared) = declared_triangles(bytes) else {
-        let length = bytes.len();
+        let length = counted(bytes.len(), "byte", "bytes");
         let message = format!(
-            "the file has only {length} bytes; an STL begins with `solid` (text) or has at least {HEADER} bytes (binary)"
+            "the file has only {length}; an STL begins with `solid` (text) or has at least {HEADER} bytes (binary)"
         );
         return Err(ReadError::new(None, message));
     };
@@ -98,9 +99,12 @@ const WRONG_COUNT: &str =
 fn mismatch(declared: u32, body: usize, what: &str) -> String {
     let (whole, rest) = (body / TRIANGLE, body % TRIANGLE);
     format!(
-        "the header promises {declared} triangles, which take {} bytes, but the file has {}, that is, {whole} triangles and {rest} bytes: {what}",
+        "the header promises {}, which take {} bytes, but the file has {}, that is, {} and {}: {what}",
+        counted(declared as usize, "triangle", "triangles"),
         size(declared),
-        HEADER + body
+        HEADER + body,
+        counted(whole, "triangle", "triangles"),
+        counted(rest, "byte", "bytes"),
     )
 }
 
