@@ -7,11 +7,11 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use tumble::{DVec3, Mesh};
-use tumble_io::mesh::read_mesh;
+use tumble_io::mesh::{Weld, read_mesh};
 
 fn main() {
     for path in std::env::args().skip(1) {
-        let facts = match read_mesh(Path::new(&path), Some(true)) {
+        let facts = match read_mesh(Path::new(&path), Some(Weld::Within(0.0))) {
             Ok(file) => facts(&file.mesh),
             Err(error) => json!({ "error": error.to_string() }),
         };
