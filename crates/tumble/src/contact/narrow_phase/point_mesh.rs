@@ -173,7 +173,7 @@ impl MeshQuery<'_> {
         };
         let found = match self.ahead {
             None => view.touching(&nearest),
-            Some(step) => view.within(step, &nearest, [pose, mesh_pose], position),
+            Some(step) => view.within((step, self.reach), &nearest, [pose, mesh_pose], position),
         };
         // 0: the next step has to look again
         let (offset, contact) = found.ok_or(0.0)?;

@@ -28,13 +28,14 @@ impl PointView<'_> {
         self.surface.contact(self.mesh, self.to_mesh, self.place, nearest)
     }
 
-    /// The contact now, or else that which the point will have after a `step` (s) at the velocities of the two poses, with minus the
-    /// gap as its depth. The nearest point of a mesh does not tell from which side it will be touched, so that place is looked at.
+    /// The contact now, or else that which the point may have within a `step` (s) and at a gap up to `reach` (m), with minus the gap as
+    /// its depth. The nearest point of a mesh does not tell from which side it will be touched: of a convex mesh it is the plane that
+    /// separates them, of another that which the point gets to at the velocities of the two poses.
     ///
     /// The couple is that over the force, in m.
     pub fn within(
         &self,
-        step: f64,
+        (step, reach): (f64, f64),
         nearest: &Nearest,
         [pose, mesh_pose]: [&BodyPose; 2],
         position: DVec3,
@@ -45,6 +46,10 @@ impl PointView<'_> {
         };
         if let Some((offset, contact)) = self.touching(nearest) {
             return Some((offset, per_force(contact)));
+        }
+        let apart = self.surface.apart(self.mesh, self.to_mesh, self.place, reach);
+        if apart.is_some() {
+            return apart;
         }
         let velocity_at = |pose: &BodyPose, at: DVec3| {
             pose.velocity + pose.angular_velocity.cross(at - pose.position)

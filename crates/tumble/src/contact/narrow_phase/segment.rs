@@ -48,7 +48,7 @@ pub(super) struct Sample {
 pub(super) struct Extremum {
     /// Vector from the middle of the segment to it (m).
     pub offset: DVec3,
-    /// The function plus the centring term (m), below zero.
+    /// The function plus the centring term (m).
     pub value: f64,
     /// The gradient of `value` as the segment moves.
     pub gradient: DVec3,
@@ -114,28 +114,29 @@ fn crossing(low: &Try, high: &Try) -> (f64, f64) {
 }
 
 /// The minimum of a convex function on the segment from −`half` to `half`; `evaluate` returns it at a vector from the middle.
-/// `None` if it is not below zero.
+/// `None` if it is not below `limit` (m), 0 or more.
 pub(super) fn minimum(
     half: DVec3,
+    limit: f64,
     evaluate: impl FnMut(DVec3) -> Option<Sample>,
 ) -> Option<Extremum> {
     let mut function = OnSegment::new(half, evaluate);
     let length = function.length;
-    let below_zero = |found: Extremum| (found.value < 0.0).then_some(found);
+    let below_limit = |found: Extremum| (found.value < limit).then_some(found);
     let first = function.at(0.0)?;
     if first.slope.abs() <= NEGLIGIBLE * length {
-        return below_zero(function.single(&first, true));
+        return below_limit(function.single(&first, true));
     }
     let end = function.at(-first.slope.signum())?;
     if end.slope * first.slope >= 0.0 {
-        return below_zero(function.single(&end, true));
+        return below_limit(function.single(&end, true));
     }
     let (mut low, mut high) = if first.slope < 0.0 { (first, end) } else { (end, first) };
     let mut best = if end.value < first.value { end } else { first };
     for number in 0..TRIES {
         // the tangents at both ends are lower bounds
         let (t, bound) = crossing(&low, &high);
-        if bound > -NEGLIGIBLE * length {
+        if bound > limit - NEGLIGIBLE * length {
             return None;
         }
         // where the function is curved, tangents at one end alone converge slowly: halve the interval now and then
@@ -160,12 +161,12 @@ pub(super) fn minimum(
         low = function.at((t - BESIDE).max(low.t))?;
         high = function.at((t + BESIDE).min(high.t))?;
         if low.slope >= 0.0 || high.slope <= 0.0 {
-            return below_zero(function.single(if low.slope >= 0.0 { &low } else { &high }, true));
+            return below_limit(function.single(if low.slope >= 0.0 { &low } else { &high }, true));
         }
     }
     let (t, value) = crossing(&low, &high);
     let is_bound = (low.t..=high.t).contains(&t) && best.value - value <= SLACK * value.abs();
-    below_zero(if is_bound { function.crest(&low, &high) } else { function.single(&best, true) })
+    below_limit(if is_bound { function.crest(&low, &high) } else { function.single(&best, true) })
 }
 
 /// Visits the minima below zero on the segment, and the maxima below zero between them. Two minima are certainly told apart
@@ -287,7 +288,7 @@ mod tests {
     }
 
     fn deepest(cube: &SignedDistance, middle: DVec3, half: DVec3) -> Option<Extremum> {
-        minimum(half, |offset| {
+        minimum(half, 0.0, |offset| {
             let nearest = cube.query(middle + offset, 0, f64::INFINITY)?;
             Some(Sample { value: nearest.distance, gradient: nearest.gradient, turn: DVec3::ZERO })
         })

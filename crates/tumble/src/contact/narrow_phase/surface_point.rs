@@ -75,7 +75,7 @@ impl<'a> SurfacePoint<'a> {
         }
         let half = to_mesh * self.half_segment;
         if view.has_planes() {
-            let found = minimum(half, |offset| plane_sample(&view, place + offset))?;
+            let found = minimum(half, 0.0, |offset| plane_sample(&view, place + offset))?;
             return Some((found.offset, Energy::at(&found).contact()?));
         }
         let mut total = EdgeTotal::default();
@@ -90,6 +90,38 @@ impl<'a> SurfacePoint<'a> {
         };
         extrema(half, mesh.thickness(), evaluate, |extremum| total.add(&extremum));
         Some((total.offset, total.energy.contact()?))
+    }
+}
+
+impl SurfacePoint<'_> {
+    /// The contact with a convex mesh of a point that is outside of it, at a gap of less than `reach` (m): with the plane that separates
+    /// them most. Its depth is minus the gap. `None` also where the mesh is not made of planes.
+    pub fn apart(
+        &self,
+        mesh: &SignedDistance,
+        to_mesh: DMat3,
+        place: DVec3,
+        reach: f64,
+    ) -> Option<(DVec3, PointContact)> {
+        let view = View::new(self.normals, mesh, to_mesh);
+        if !view.has_planes() {
+            return None;
+        }
+        if self.half_segment == DVec3::ZERO {
+            let (depth, normal) = view.nearest_plane(place)?;
+            let is_near = depth <= 0.0 && depth > -reach;
+            return is_near.then_some((DVec3::ZERO, PointContact::plain(normal, depth)));
+        }
+        let half = to_mesh * self.half_segment;
+        let limit = reach * OUTSIDE;
+        let found = minimum(half, limit, |offset| {
+            let (depth, normal) = view.nearest_plane(place + offset)?;
+            Some(outside_sample(-depth, normal))
+        })?;
+        let size = found.gradient.length();
+        let is_apart = found.value >= 0.0 && size > 0.0;
+        let contact = PointContact::plain(found.gradient / size, -found.value / OUTSIDE);
+        is_apart.then_some((found.offset, contact))
     }
 }
 
