@@ -53,6 +53,7 @@ impl State {
         put(f64::from_bits(totals.evaluations));
         if totals.iterations != 0 {
             put(self.since_kick);
+            put(f64::from(self.step_divisions));
             put(totals.numerical);
             put(f64::from_bits(totals.iterations));
             put(f64::from_bits(totals.not_converged));

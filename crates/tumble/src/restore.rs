@@ -127,7 +127,8 @@ impl State {
         check_pair_springs(model, &self.pair_springs)?;
         self.check_impulses(model)?;
         let is_valid = (0.0..=model.dt).contains(&self.since_kick);
-        check_values("", &[("since_kick", is_valid)])?;
+        let divisions_ok = self.step_divisions <= crate::stage::MOST_DIVISIONS;
+        check_values("", &[("since_kick", is_valid), ("step_divisions", divisions_ok)])?;
         let totals = &self.totals;
         let values = [
             ("drag", totals.drag.is_finite()),

@@ -21,6 +21,8 @@ pub struct State {
     pub pair_impulses: Vec<ContactImpulse>,
     /// The time since the latest kick (s), with the integrator `Implicit`, whose steps may be divided; else 0.
     pub since_kick: f64,
+    /// Such steps are divided into 2 to the power of this.
+    pub step_divisions: u32,
     /// Accumulated losses and extremes.
     pub totals: RunTotals,
 }

@@ -1,6 +1,6 @@
 //! The time step, as a list of stages.
 
-use crate::stage::{self, around_body_contact, around_implicit_contact};
+use crate::stage::{self, ImplicitSteps, around_body_contact, around_implicit_contact};
 use crate::{Batch, Integrator, Model, Scratch, State, StepError, for_each_batch, parallel};
 
 /// Advances `state` by one step of `model.dt`, or returns a [`StepError`] when the new state fails a check.
@@ -39,26 +39,31 @@ fn drift_kick_drift(model: &Model, state: &mut State, scratch: &mut Scratch) {
 /// The same with a kick that satisfies the contact law at the end of the step: stable at any step. A long step of fast bodies is
 /// divided, so that none passes another.
 fn implicit(model: &Model, state: &mut State, scratch: &mut Scratch) {
-    let (start, count) = (state.time, stage::implicit_step_count(model, state));
-    for number in 0..count {
-        state.time = start + model.dt * f64::from(number) / f64::from(count);
-        implicit_step(model, state, scratch, model.dt / f64::from(count));
+    let mut parts = ImplicitSteps::new(state);
+    while let Some(h) = parts.next(model, state) {
+        implicit_step(model, state, scratch, &mut parts, h);
     }
 }
 
-fn implicit_step(model: &Model, state: &mut State, scratch: &mut Scratch, h: f64) {
+fn implicit_step(
+    model: &Model,
+    state: &mut State,
+    scratch: &mut Scratch,
+    parts: &mut ImplicitSteps,
+    h: f64,
+) {
     let before = |batch: &mut Batch| {
         stage::find_free_flight(batch, h);
         stage::drift_free_flight(batch, h);
         stage::drift(batch, 0.5 * h);
         stage::move_kinematic(batch, 0.0, 0.5 * h);
     };
-    around_implicit_contact((model, state, scratch), h, before, |batch| {
+    let outcome = around_implicit_contact((model, state, scratch), h, before, |batch| {
         stage::drift(batch, 0.5 * h);
         stage::move_kinematic(batch, 0.5 * h, h);
         stage::check(batch);
     });
-    state.since_kick = 0.5 * h;
+    parts.finish(model, state, outcome, h);
 }
 
 /// The same in sub-steps that bound the energy error. The builder allows it only without contact between bodies.

@@ -9,7 +9,7 @@
 //! - number of friction springs between bodies, and for each spring: first body, second body, kind of
 //!   contact (one byte), particle, other, stretch;
 //! - number of impulses of these contacts, and for each: normal, tangential (absent before version 5);
-//! - time since the latest kick (likewise);
+//! - time since the latest kick, and the exponent of the division of steps (likewise);
 //! - the totals (the last three are absent before version 5).
 
 use tumble::{
@@ -43,8 +43,17 @@ const CONTACT_KINDS: [ContactKind; 4] = [
 /// Encodes a state.
 pub(super) fn encode(state: &State) -> Vec<u8> {
     // destructured completely, so that the compiler reports a new field here
-    let State { step, time, bodies, springs, pair_springs, pair_impulses, since_kick, totals } =
-        state;
+    let State {
+        step,
+        time,
+        bodies,
+        springs,
+        pair_springs,
+        pair_impulses,
+        since_kick,
+        step_divisions,
+        totals,
+    } = state;
     let spring_count: usize = springs.iter().map(Vec::len).sum();
     let spring_bytes = spring_count * SPRING_LENGTH
         + pair_springs.len() * PAIR_SPRING_LENGTH
@@ -96,6 +105,7 @@ pub(super) fn encode(state: &State) -> Vec<u8> {
         push_numbers(&mut out, tangential.to_array());
     }
     push_numbers(&mut out, [*since_kick]);
+    out.extend(step_divisions.to_le_bytes());
     let RunTotals { drag, dashpot, slip, work, max_depth, evaluations, .. } = *totals;
     push_numbers(&mut out, [drag, dashpot, slip, work, max_depth]);
     out.extend(evaluations.to_le_bytes());
@@ -121,6 +131,7 @@ pub(super) fn decode(mut bytes: Bytes, version: u32) -> Option<State> {
     let has_impulses = version >= FIRST_WITH_IMPULSES;
     let pair_impulses = if has_impulses { impulses(&mut bytes)? } else { Vec::new() };
     let since_kick = if has_impulses { bytes.f64()? } else { 0.0 };
+    let step_divisions = if has_impulses { bytes.u32()? } else { 0 };
     let mut totals = RunTotals {
         drag: bytes.f64()?,
         dashpot: bytes.f64()?,
@@ -134,8 +145,17 @@ pub(super) fn decode(mut bytes: Bytes, version: u32) -> Option<State> {
         totals.numerical = bytes.f64()?;
         (totals.iterations, totals.not_converged) = (bytes.u64()?, bytes.u64()?);
     }
-    let state =
-        State { step, time, bodies, springs, pair_springs, pair_impulses, since_kick, totals };
+    let state = State {
+        step,
+        time,
+        bodies,
+        springs,
+        pair_springs,
+        pair_impulses,
+        since_kick,
+        step_divisions,
+        totals,
+    };
     bytes.is_empty().then_some(state)
 }
 

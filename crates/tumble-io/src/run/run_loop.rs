@@ -172,10 +172,19 @@ fn surface_note(scene: &Scene) -> Option<String> {
 
 /// Copies a state into `copy`, reusing its memory.
 fn copy_state(copy: &mut State, state: &State) {
-    let State { step, time, bodies, springs, pair_springs, pair_impulses, since_kick, totals } =
-        state;
+    let State {
+        step,
+        time,
+        bodies,
+        springs,
+        pair_springs,
+        pair_impulses,
+        since_kick,
+        step_divisions,
+        totals,
+    } = state;
     (copy.step, copy.time, copy.totals) = (*step, *time, *totals);
-    copy.since_kick = *since_kick;
+    (copy.since_kick, copy.step_divisions) = (*since_kick, *step_divisions);
     copy.bodies.clone_from(bodies);
     copy.springs.clone_from(springs);
     copy.pair_springs.clone_from(pair_springs);

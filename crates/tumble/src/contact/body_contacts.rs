@@ -12,7 +12,7 @@ use super::neighbour_list::{ChunkNeighbours, NeighbourLists};
 use super::pair::Pair;
 use super::pose::BodyPose;
 use super::since_kick::SinceKick;
-use super::solver::{Found, Solver};
+use super::solver::{Found, Outcome, Solver};
 use super::tunnelling::TunnellingRisk;
 use crate::parallel::{self, CHUNK};
 use crate::{BodyForces, ContactKind, Integrator, Model, PairSpring, State};
@@ -135,11 +135,11 @@ impl BodyContacts {
         solver: &mut Solver,
         forces: &mut [BodyForces],
         since_kick: SinceKick,
-    ) {
+    ) -> Outcome {
         self.update_neighbour_lists(model, state, &since_kick);
         self.evaluate::<false>(model, &state.pair_springs, since_kick);
         let Self { poses, contacts, lists, .. } = self;
-        solver.solve(model, &Found { chunks: contacts, lists, poses, since_kick }, state, forces);
+        solver.solve(model, &Found { chunks: contacts, lists, poses, since_kick }, state, forces)
     }
 
     /// Moves the friction springs after the latest evaluation into the state; to be called once per step.

@@ -48,4 +48,4 @@ pub(crate) use self::pair::{
     can_touch, contact_kinds, contact_law, contact_particles, sphere_radius, tunnelling_limit,
 };
 pub(crate) use self::since_kick::{Kick, SinceKick};
-pub(crate) use self::solver::Solver;
+pub(crate) use self::solver::{Outcome, Solver};

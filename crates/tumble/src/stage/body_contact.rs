@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::wall_contact::wall_contact_again;
-use crate::contact::{SinceKick, gather};
+use crate::contact::{Outcome, SinceKick, gather};
 use crate::{Batch, BodyModel, Integrator, Model, Scratch, State, for_each_batch, parallel};
 
 /// Runs the stages `before` on all batches, computes the contact forces between bodies, and runs the stages `after`.
@@ -41,24 +41,26 @@ pub fn around_body_contact(
     scratch.body_contacts.store_friction_springs(&mut state.pair_springs);
 }
 
-/// The same with an implicit solution of the contact law, in place of forces, for a step of length `h` (s).
-pub fn around_implicit_contact(
+/// The same with an implicit solution of the contact law, in place of forces, for a step of length `h` (s). Returns how it ended; `None`
+/// where nothing can touch.
+pub(crate) fn around_implicit_contact(
     (model, state, scratch): (&Model, &mut State, &mut Scratch),
     h: f64,
     before: impl Fn(&mut Batch) + Sync,
     after: impl Fn(&mut Batch) + Sync,
-) {
+) -> Option<Outcome> {
     let since_kick = SinceKick::at_implicit_kick(state, h);
     for_each_batch(model, state, scratch, |batch| {
         before(batch);
         let Batch { model, first, bodies, poses, .. } = batch;
         gather::update_poses(model, *first, poses, bodies, &since_kick);
     });
-    if model.has_body_contact {
+    let outcome = model.has_body_contact.then(|| {
         let Scratch { body_contacts, solver, forces, .. } = scratch;
-        body_contacts.solve(model, state, solver, forces, since_kick);
-    }
+        body_contacts.solve(model, state, solver, forces, since_kick)
+    });
     for_each_batch(model, state, scratch, after);
+    outcome
 }
 
 /// Neighbour lists, narrow phase and contact forces, for a kick over the time step.

@@ -1,15 +1,86 @@
-//! How often a long implicit step is divided.
+//! How a long implicit step is divided.
+//!
+//! Two things divide it: bodies so fast that one could pass another, and contacts that depend on each other so much that the
+//! iterations do not converge (tall stacks, large ratios of mass): shorter steps need fewer of them. Parts are the step over a power of 2.
+//! The state holds the exponent, so that a run that resumes takes the same steps.
 
-use crate::contact::sphere_radius;
+use crate::contact::{Outcome, sphere_radius};
 use crate::kinematics::Kinematics;
 use crate::{Model, State, Surface};
 
-/// A step is divided into at most this many.
-const MOST: u32 = 32;
+/// The largest exponent.
+pub(crate) const MOST_DIVISIONS: u32 = 6;
+/// The exponent of the first step, which has no impulses to begin with.
+const AT_START: u32 = 2;
+/// What is added to the exponent where the iterations do not converge.
+const AFTER_FAILURE: u32 = 2;
+/// The exponent shrinks after a part with less than this share of the largest number of iterations.
+const EASY: u32 = 8;
 
-/// The number of parts that a step is divided into: so many that no body moves farther in one than the smallest radius of a sphere, or a
-/// quarter of the smallest thickness of a mesh. Contacts are found anew in each part.
-pub fn implicit_step_count(model: &Model, state: &State) -> u32 {
+/// It shrinks at most once in so many steps: bodies at rest between kicks of another distance have to come to rest again.
+const STEPS_BETWEEN: u64 = 32;
+
+/// The parts of one step.
+#[derive(Clone, Copy, Debug)]
+pub struct ImplicitSteps {
+    /// Time at the start of the step (s).
+    start: f64,
+    /// The part of the step that is done, and the size of the present part, in units of the smallest part.
+    done: u32,
+    size: u32,
+}
+
+impl ImplicitSteps {
+    /// The parts of the step that begins with `state`.
+    pub fn new(state: &State) -> Self {
+        Self { start: state.time, done: 0, size: 0 }
+    }
+
+    /// The length of the next part (s); sets the time of the state to its start.
+    pub fn next(&mut self, model: &Model, state: &mut State) -> Option<f64> {
+        let whole = 1 << MOST_DIVISIONS;
+        if self.done == whole {
+            return None;
+        }
+        if state.time == 0.0 {
+            state.step_divisions = AT_START;
+        }
+        let divisions = state.step_divisions.max(divisions_for_speed(model, state));
+        self.size = whole >> divisions.min(MOST_DIVISIONS);
+        while self.done % self.size != 0 {
+            self.size /= 2;
+        }
+        let part = |size: u32| model.dt * (f64::from(size) / f64::from(whole));
+        state.time = self.start + part(self.done);
+        Some(part(self.size))
+    }
+
+    /// Ends a part of length `h` (s), whose iterations ended with `outcome`.
+    pub(crate) fn finish(
+        &mut self,
+        model: &Model,
+        state: &mut State,
+        outcome: Option<Outcome>,
+        h: f64,
+    ) {
+        state.since_kick = 0.5 * h;
+        self.done += self.size;
+        let Some(Outcome { iterations, has_converged }) = outcome else { return };
+        let divisions = MOST_DIVISIONS - self.size.trailing_zeros();
+        if !has_converged {
+            state.step_divisions = (divisions + AFTER_FAILURE).min(MOST_DIVISIONS);
+        } else if iterations <= model.solver.max_iterations / EASY
+            && self.done == self.size
+            && state.step % STEPS_BETWEEN == 0
+        {
+            state.step_divisions = state.step_divisions.saturating_sub(1);
+        }
+    }
+}
+
+/// The exponent for which no body moves farther in a part than the smallest radius of a sphere, or a quarter of the smallest thickness
+/// of a mesh.
+fn divisions_for_speed(model: &Model, state: &State) -> u32 {
     let reaches = model.bodies.iter().filter(|body| body.surface != Surface::None);
     let reaches = reaches.map(|body| match &body.signed_distance {
         Some(distance) => 0.25 * distance.thickness(),
@@ -17,7 +88,7 @@ pub fn implicit_step_count(model: &Model, state: &State) -> u32 {
     });
     let reach = reaches.filter(|&reach| reach > 0.0).fold(f64::INFINITY, f64::min);
     if reach == f64::INFINITY {
-        return 1;
+        return 0;
     }
     let bodies = model.bodies.iter().zip(&state.bodies);
     let speeds = bodies.filter(|(body, _)| body.surface != Surface::None).map(|(body, state)| {
@@ -25,7 +96,6 @@ pub fn implicit_step_count(model: &Model, state: &State) -> u32 {
         state.velocity.length() + omega.length() * body.extent
     });
     let speed = speeds.fold(0.0, f64::max) + model.gravity.length() * model.dt;
-    let parts = (model.dt * speed / reach).ceil();
-    // NaN and infinity are found by the check at the end of the step
-    if parts > 1.0 { (parts as u32).min(MOST) } else { 1 }
+    let path = model.dt * speed;
+    (0..MOST_DIVISIONS).find(|&n| path <= reach * f64::from(1u32 << n)).unwrap_or(MOST_DIVISIONS)
 }

@@ -17,14 +17,16 @@ mod mouse_spring;
 mod substep;
 mod wall_contact;
 
-pub use body_contact::{around_body_contact, around_implicit_contact};
+pub use body_contact::around_body_contact;
+pub(crate) use body_contact::around_implicit_contact;
 pub use check::{check, report_failure};
 pub use drag::drag;
 pub use drift::{drift, drift_free_flight};
 pub use euler::euler;
 pub use free_flight::find_free_flight;
 pub use gravity::gravity;
-pub use implicit_steps::implicit_step_count;
+pub use implicit_steps::ImplicitSteps;
+pub(crate) use implicit_steps::MOST_DIVISIONS;
 pub use kick::kick;
 pub use kinematic::move_kinematic;
 pub use mouse_spring::{MouseSpring, apply_mouse_spring};

@@ -10,7 +10,7 @@ use crate::lanes::{Vec3x8, positive, sum};
 
 /// How the iterations ended.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Outcome {
+pub(crate) struct Outcome {
     pub iterations: u32,
     pub has_converged: bool,
 }
@@ -118,6 +118,10 @@ fn visit_pack<S: Simd>(
         let [normal_change, square, impulse] = pair.visit(simd, row);
         change = change + normal_change * normal_change + square;
         total = total + impulse * impulse;
+    }
+    // back again: the contacts of two bodies depend on each other most of all, and their bodies are at hand
+    for number in 1..count {
+        let _ = pair.visit(simd, &mut rows[place(number, count, !is_backward)]);
     }
     pair.scatter(pack, bodies);
     Change { change: sum(change), total: sum(total) }

@@ -29,5 +29,6 @@ mod losses;
 mod results;
 mod rows;
 
+pub(crate) use self::iterations::Outcome;
 pub(super) use self::results::Found;
 pub(crate) use self::results::Solver;

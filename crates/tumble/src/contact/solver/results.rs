@@ -9,7 +9,7 @@ use super::super::since_kick::SinceKick;
 use super::bodies::SolverBody;
 use super::colouring::Colouring;
 use super::groups::{self, ContactPlace, Group};
-use super::iterations::{apply, iterate};
+use super::iterations::{Outcome, apply, iterate};
 use super::law::{Step, prepare};
 use super::losses::{Account, account};
 use super::rows::{Rows, Source};
@@ -47,7 +47,7 @@ impl Solver {
         found: &Found,
         state: &mut State,
         forces: &mut [BodyForces],
-    ) {
+    ) -> Outcome {
         let SinceKick { step: h, time, .. } = found.since_kick;
         self.bodies.clear();
         let bodies = model.bodies.iter().zip(found.poses);
@@ -78,6 +78,7 @@ impl Solver {
         self.move_bodies(model, h, (state, forces), &mut totals);
         self.store(found, state, &mut totals);
         state.totals += totals;
+        outcome
     }
 
     fn prepare(&mut self, step: Step) {
