@@ -43,6 +43,7 @@ impl WorldBuilder {
             integrator: self.integrator,
             solver: self.solver,
             energy_tolerance: self.energy_tolerance,
+            resolves_contacts: true,
             walls: self.walls.iter().map(|(wall, _)| *wall).collect(),
             wall_gap: smallest_gap(&self.walls),
             has_body_contact: self.bodies.iter().any(|body| body.surface != Surface::None)
@@ -72,13 +73,11 @@ impl WorldBuilder {
         errors.extend(overlaps(&model, &state));
         // implicit steps are stable at any length
         let is_bounded = self.integrator != Integrator::Implicit && !self.force;
-        errors.extend(critical_dt(&model).filter(|c| self.dt > c.dt && is_bounded).map(
-            |critical| BuildError::Unstable {
-                dt: self.dt,
-                critical: critical.dt,
-                body: critical.body,
-            },
-        ));
+        let critical = critical_dt(&model);
+        model.resolves_contacts = critical.as_ref().is_none_or(|critical| self.dt <= critical.dt);
+        errors.extend(critical.filter(|c| self.dt > c.dt && is_bounded).map(|critical| {
+            BuildError::Unstable { dt: self.dt, critical: critical.dt, body: critical.body }
+        }));
         if errors.is_empty() { Ok(World::new(model, state)) } else { Err(BuildErrors(errors)) }
     }
 }

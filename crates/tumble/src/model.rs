@@ -72,6 +72,8 @@ pub struct Model {
     /// Steps in contact are refined until the energy error of each substep is below this fraction of the energy in
     /// the contact; `None` disables refinement.
     pub energy_tolerance: Option<f64>,
+    /// Whether `dt` is at most the critical step of the explicit integrators.
+    pub resolves_contacts: bool,
     /// The walls.
     pub walls: Vec<WallPlane>,
     /// The smallest distance between two opposite walls (m).

@@ -3,7 +3,7 @@
 use crate::contact::{BodyContacts, Solver};
 use crate::parallel::CHUNK;
 use crate::workspace::Workspace;
-use crate::{BodyForces, FrictionSpring};
+use crate::{BodyForces, FrictionSpring, State};
 
 /// Values that are computed within a step, and the buffers that hold them. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +18,8 @@ pub struct Scratch {
     pub(crate) workspaces: Vec<Workspace>,
     /// Contacts between bodies, and of spheres with walls.
     pub(crate) body_contacts: BodyContacts,
+    /// The state before a part of an implicit step, which may have to be repeated.
+    pub(crate) before: State,
     /// The implicit solver.
     pub(crate) solver: Solver,
 }

@@ -27,6 +27,19 @@ pub struct State {
     pub totals: RunTotals,
 }
 
+impl State {
+    /// Becomes a copy of another state, and reuses its own memory.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { step, time, since_kick, step_divisions, totals, .. } = *other;
+        (self.step, self.time, self.totals) = (step, time, totals);
+        (self.since_kick, self.step_divisions) = (since_kick, step_divisions);
+        self.bodies.clone_from(&other.bodies);
+        self.springs.clone_from(&other.springs);
+        self.pair_springs.clone_from(&other.pair_springs);
+        self.pair_impulses.clone_from(&other.pair_impulses);
+    }
+}
+
 /// The state of one body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {

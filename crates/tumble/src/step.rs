@@ -1,5 +1,6 @@
 //! The time step, as a list of stages.
 
+use crate::contact::Outcome;
 use crate::stage::{self, ImplicitSteps, around_body_contact, around_implicit_contact};
 use crate::{Batch, Integrator, Model, Scratch, State, StepError, for_each_batch, parallel};
 
@@ -41,7 +42,9 @@ fn drift_kick_drift(model: &Model, state: &mut State, scratch: &mut Scratch) {
 fn implicit(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let mut parts = ImplicitSteps::new(state);
     while let Some(h) = parts.next(model, state) {
-        implicit_step(model, state, scratch, &mut parts, h);
+        scratch.before.copy_from(state);
+        let outcome = implicit_step(model, state, scratch, h);
+        parts.finish(model, (state, &mut scratch.before), outcome, h);
     }
 }
 
@@ -49,21 +52,19 @@ fn implicit_step(
     model: &Model,
     state: &mut State,
     scratch: &mut Scratch,
-    parts: &mut ImplicitSteps,
     h: f64,
-) {
+) -> Option<Outcome> {
     let before = |batch: &mut Batch| {
         stage::find_free_flight(batch, h);
         stage::drift_free_flight(batch, h);
         stage::drift(batch, 0.5 * h);
         stage::move_kinematic(batch, 0.0, 0.5 * h);
     };
-    let outcome = around_implicit_contact((model, state, scratch), h, before, |batch| {
+    around_implicit_contact((model, state, scratch), h, before, |batch| {
         stage::drift(batch, 0.5 * h);
         stage::move_kinematic(batch, 0.5 * h, h);
         stage::check(batch);
-    });
-    parts.finish(model, state, outcome, h);
+    })
 }
 
 /// The same in sub-steps that bound the energy error. The builder allows it only without contact between bodies.

@@ -105,7 +105,7 @@ impl<'a> RunLoop<'a> {
 
     /// Steps to step number `target`, or until progress is to be reported.
     fn advance(&mut self, target: u64) -> Result<(), RunError> {
-        copy_state(&mut self.last_valid, self.world.state());
+        self.last_valid.copy_from(self.world.state());
         let batch = steps_per_clock_read(&self.world);
         let start = Instant::now();
         let mut elapsed = Duration::ZERO;
@@ -139,7 +139,7 @@ impl<'a> RunLoop<'a> {
             if stepped.is_err() || self.world.state().check_fits(self.world.model()).is_err() {
                 break;
             }
-            copy_state(&mut valid, self.world.state());
+            valid.copy_from(self.world.state());
         }
         let _ = self.recorder.write_checkpoint(&self.scene, &valid);
     }
@@ -168,27 +168,6 @@ fn surface_note(scene: &Scene) -> Option<String> {
         "body \"{name}\"{others} touches other bodies with its particles alone, which may pass beside them: \
          give it a `surface`"
     ))
-}
-
-/// Copies a state into `copy`, reusing its memory.
-fn copy_state(copy: &mut State, state: &State) {
-    let State {
-        step,
-        time,
-        bodies,
-        springs,
-        pair_springs,
-        pair_impulses,
-        since_kick,
-        step_divisions,
-        totals,
-    } = state;
-    (copy.step, copy.time, copy.totals) = (*step, *time, *totals);
-    (copy.since_kick, copy.step_divisions) = (*since_kick, *step_divisions);
-    copy.bodies.clone_from(bodies);
-    copy.springs.clone_from(springs);
-    copy.pair_springs.clone_from(pair_springs);
-    copy.pair_impulses.clone_from(pair_impulses);
 }
 
 /// Steps between two reads of the clock: about 100,000 particle updates.

@@ -1,7 +1,8 @@
 //! How a long implicit step is divided.
 //!
 //! Two things divide it: bodies so fast that one could pass another, and contacts that depend on each other so much that the
-//! iterations do not converge (tall stacks, large ratios of mass): shorter steps need fewer of them. Parts are the step over a power of 2.
+//! iterations do not converge (tall stacks, large ratios of mass): shorter steps need fewer of them, and the part is repeated. Parts are
+//! the step over a power of 2.
 //! The state holds the exponent, so that a run that resumes takes the same steps.
 
 use crate::contact::{Outcome, sphere_radius};
@@ -55,21 +56,28 @@ impl ImplicitSteps {
         Some(part(self.size))
     }
 
-    /// Ends a part of length `h` (s), whose iterations ended with `outcome`.
+    /// Ends a part of length `h` (s), whose iterations ended with `outcome`; if they have not converged, the part
+    /// begins anew from the state `before`, and is smaller.
     pub(crate) fn finish(
         &mut self,
         model: &Model,
-        state: &mut State,
+        (state, before): (&mut State, &mut State),
         outcome: Option<Outcome>,
         h: f64,
     ) {
+        let divisions = MOST_DIVISIONS - self.size.trailing_zeros();
+        if outcome.is_some_and(|outcome| !outcome.has_converged) && divisions < MOST_DIVISIONS {
+            let iterations = state.totals.iterations;
+            std::mem::swap(state, before);
+            state.totals.iterations = iterations;
+            state.step_divisions = (divisions + AFTER_FAILURE).min(MOST_DIVISIONS);
+            return;
+        }
         state.since_kick = 0.5 * h;
         self.done += self.size;
         let Some(Outcome { iterations, has_converged }) = outcome else { return };
-        let divisions = MOST_DIVISIONS - self.size.trailing_zeros();
-        if !has_converged {
-            state.step_divisions = (divisions + AFTER_FAILURE).min(MOST_DIVISIONS);
-        } else if iterations <= model.solver.max_iterations / EASY
+        if has_converged
+            && iterations <= model.solver.max_iterations / EASY
             && self.done == self.size
             && state.step % STEPS_BETWEEN == 0
         {

@@ -146,6 +146,11 @@ impl<'a> View<'a> {
         Way { distance, gradient, turn: own.cross(normal) * scale }
     }
 
+    /// The share of a face that opposes the point, from 0 to 1.
+    pub fn opposes(&self, normal: DVec3) -> f64 {
+        Kind::Opposing.share(self.facing(normal).0)
+    }
+
     /// The cosine c of the angle between the opposite of a face's normal and the normal of the point's own surface that is
     /// closest to it; and that normal.
     fn facing(&self, normal: DVec3) -> (f64, DVec3) {

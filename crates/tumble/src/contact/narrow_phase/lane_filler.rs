@@ -215,7 +215,10 @@ impl<'a> LaneFiller<'a> {
                 }
             }
         } else {
-            point.clear_until = path - lanes.depth[lane];
+            // that of a point and a mesh is a relative path, and set already
+            if !pair.is_point_mesh() {
+                point.clear_until = path - lanes.depth[lane];
+            }
             lanes.depth[lane] = 0.0;
         }
         // `point_mesh` sets the value of its pairs as a whole

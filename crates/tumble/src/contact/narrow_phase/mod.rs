@@ -6,6 +6,7 @@
 
 mod exits;
 mod lane_filler;
+mod opposing_planes;
 mod pair_poses;
 mod point_mesh;
 mod point_view;

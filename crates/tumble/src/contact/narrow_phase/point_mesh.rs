@@ -54,6 +54,7 @@ pub(super) fn detect<S: Simd, const PREDICT: bool>(
         margin,
         reach,
         ahead,
+        resolves_rims: poses.model.resolves_contacts,
     };
     let mut clear_until = f64::INFINITY;
     for (block, start) in (pair.start..pair.end).step_by(BLOCK).enumerate() {
@@ -115,6 +116,8 @@ struct MeshQuery<'a> {
     /// Up to which gap contacts are found (m), and how far ahead in time those of surfaces (s), for the implicit solver.
     reach: f64,
     ahead: Option<f64>,
+    /// See [`PointView`].
+    resolves_rims: bool,
 }
 
 impl MeshQuery<'_> {
@@ -170,6 +173,7 @@ impl MeshQuery<'_> {
             to_mesh: mesh_pose.rotation.transpose() * pose.rotation,
             place: local,
             contact_distance,
+            resolves_rims: self.resolves_rims,
         };
         let found = match self.ahead {
             None => view.touching(&nearest),

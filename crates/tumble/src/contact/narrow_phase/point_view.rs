@@ -16,6 +16,8 @@ pub(super) struct PointView<'a> {
     pub place: DVec3,
     /// The distance at which it may touch (m).
     pub contact_distance: f64,
+    /// Whether a step is short enough for the forces of rims.
+    pub resolves_rims: bool,
 }
 
 impl PointView<'_> {
@@ -44,6 +46,12 @@ impl PointView<'_> {
             let couple = contact.couple / (contact.weight * contact.depth);
             PointContact { couple, ..contact }
         };
+        if !self.resolves_rims
+            && let Some(found) =
+                self.surface.with_planes(self.mesh, self.to_mesh, self.place, reach)
+        {
+            return found;
+        }
         if let Some((offset, contact)) = self.touching(nearest) {
             return Some((offset, per_force(contact)));
         }

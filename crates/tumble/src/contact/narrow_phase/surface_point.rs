@@ -13,12 +13,13 @@
 use glam::{DMat3, DVec3};
 
 use super::exits::{Exits, View, Way};
+use super::opposing_planes;
 use super::segment::{Extremum, Sample, extrema, minimum};
 use crate::smooth_step::{smooth_step, smooth_step_slope};
 use crate::{ContactPoints, Nearest, SignedDistance};
 
 /// √3, the largest slope of √s.
-const OUTSIDE: f64 = 1.7320508075688772;
+pub(super) const OUTSIDE: f64 = 1.7320508075688772;
 
 /// The contact of a point, in the frame of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,6 +95,20 @@ impl<'a> SurfacePoint<'a> {
 }
 
 impl SurfacePoint<'_> {
+    /// The contact with a convex mesh in a step that is too long for the forces of rims, see [`opposing_planes`]; `None` where the mesh
+    /// is not made of planes.
+    pub fn with_planes(
+        &self,
+        mesh: &SignedDistance,
+        to_mesh: DMat3,
+        place: DVec3,
+        reach: f64,
+    ) -> Option<Option<(DVec3, PointContact)>> {
+        let view = opposing_planes::view(self.normals, mesh, to_mesh)?;
+        let half = to_mesh * self.half_segment;
+        Some(opposing_planes::contact(&view, mesh, half, place, reach))
+    }
+
     /// The contact with a convex mesh of a point that is outside of it, at a gap of less than `reach` (m): with the plane that separates
     /// them most. Its depth is minus the gap. `None` also where the mesh is not made of planes.
     pub fn apart(
