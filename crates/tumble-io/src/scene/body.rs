@@ -29,9 +29,9 @@ pub fn body(reader: Reader, index: usize) -> BodyScene {
             reader.problem("name", "must not be empty");
             String::new()
         }
-        // names are a column of trajectory.csv
-        Some(name) if name.contains(|c: char| c == ',' || c == '"' || c.is_control()) => {
-            reader.problem("name", "must not contain commas, quotes, line breaks or the like");
+        // a line of trajectory.csv is a row
+        Some(name) if name.contains(char::is_control) => {
+            reader.problem("name", "must not contain line breaks or other control characters");
             name.to_owned()
         }
         Some(name) if name.chars().nth(MAX_NAME_LENGTH).is_some() => {
