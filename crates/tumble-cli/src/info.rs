@@ -160,7 +160,8 @@ impl Report<'_> {
             rows.push(("one-sided", text));
         }
         if let Ok(solid) = mesh.solid_integrals() {
-            rows.push(("volume", format!("{} m³", number(solid.measure))));
+            let (volume, centre) = (number(solid.measure), self.place(solid.centre));
+            rows.push(("volume", format!("{volume} m³, centred at {centre} m")));
         }
         if let Ok(shell) = mesh.shell_integrals() {
             rows.push(("surface area", format!("{} m²", number(shell.measure))));
@@ -218,19 +219,32 @@ fn watertight(edges: &Watertightness) -> String {
 fn particles(file: &MeshFile) -> String {
     let (kept, all) = (file.mesh.vertices.len(), file.file_vertex_count);
     if kept == all {
-        return count(kept as u64);
+        let mut text = count(kept as u64);
+        let repeated = if file.weld.is_none() { file.mesh.welded(Some(0.0)).equal } else { 0 };
+        if repeated > 0 {
+            let repeated = count(repeated as u64);
+            text += &format!(", {repeated} of them where another one is: weld = true merges them");
+        }
+        return text;
     }
     format!("{} of {} vertices", count(kept as u64), count(all as u64))
 }
 
 /// What was merged.
 fn merged(weld: &WeldReport) -> String {
-    let mut text = format!(
-        "{} equal to others; {} within {} of others, at open edges",
-        plural(weld.equal, "vertex", "vertices"),
-        count(weld.near as u64),
-        number(weld.tolerance)
-    );
+    let tolerance = number(weld.tolerance);
+    let merged = |n| plural(n, "vertex", "vertices");
+    let mut text = match (weld.equal, weld.near) {
+        (0, 0) if weld.tolerance == 0.0 => "no vertices are equal".to_owned(),
+        (0, 0) => format!("no vertices are equal, nor within {tolerance} at open edges"),
+        (equal, 0) => format!("{} merged, equal to others", merged(equal)),
+        (equal, near) => format!(
+            "{} merged: {} equal to others, {} within {tolerance} of others, at open edges",
+            merged(equal + near),
+            count(equal as u64),
+            count(near as u64)
+        ),
+    };
     if weld.collapsed > 0 {
         let triangles = plural(weld.collapsed, "triangle", "triangles");
         text += &format!("; {triangles} of no area left out");

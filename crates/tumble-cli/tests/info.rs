@@ -23,11 +23,25 @@ fn the_properties_of_a_tetrahedron_are_printed() {
     assert_contains(&line("size"), &["(1, 1, 1)"]);
     assert_contains(&line("watertight"), &["yes"]);
     // 1/6 m³, and 3/2 + √3/2 m²
-    assert_contains(&line("volume"), &["0.16667"]);
+    assert_contains(&line("volume"), &["0.16667 m³, centred at (0.25, 0.25, 0.25) m"]);
     assert_contains(&line("surface"), &["2.366"]);
 
     let outcome = dir.tumble(&["info", "t.obj", "--scale", "2", "--particle-mass", "0.5"]);
     assert_contains(&outcome.expect_status(0).stdout, &["mass               2 kg", "1.3333 m³"]);
+}
+
+#[test]
+fn vertices_at_one_point_are_named() {
+    let dir = TestDir::new();
+    dir.write("twice.obj", format!("{TETRAHEDRON}{TETRAHEDRON}"));
+    let line = |args: &[&str], key: &str| {
+        let out = dir.tumble(&[&["info", "twice.obj"], args].concat()).expect_status(0).stdout;
+        out.lines().find(|line| line.trim().starts_with(key)).unwrap_or_default().to_owned()
+    };
+    assert_contains(&line(&[], "particles"), &["8, 4 of them where another one is: weld = true"]);
+    assert_contains(&line(&["--weld", "true"], "particles"), &["4 of 8 vertices"]);
+    let merged = "4 vertices merged, equal to others";
+    assert_contains(&line(&["--weld", "true"], "weld"), &[merged]);
 }
 
 #[test]

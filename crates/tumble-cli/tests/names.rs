@@ -13,7 +13,7 @@ use roxmltree::Document;
 use serde_json::Value;
 
 /// Names of bodies, as they are and as a TOML string.
-const BODIES: [(&str, &str); 7] = [
+const BODIES: [(&str, &str); 9] = [
     ("</script><script>alert('x')</script><!--", "'''</script><script>alert('x')</script><!--'''"),
     ("a & b \\ c; &amp; &#10;", "'a & b \\ c; &amp; &#10;'"),
     ("../../outside", "'../../outside'"),
@@ -21,6 +21,8 @@ const BODIES: [(&str, &str); 7] = [
     ("@SUM(A1) ünïcode ☃ 球", "'@SUM(A1) ünïcode ☃ 球'"),
     ("</World/x> {def} ]]> % $HOME `id`", "'</World/x> {def} ]]> % $HOME `id`'"),
     ("it's", "\"it's\""),
+    ("\"big\", the 2\" one", "'\"big\", the 2\" one'"),
+    (",", "','"),
 ];
 
 /// A name of a scene file with nearly everything that a file system permits.

@@ -106,7 +106,8 @@ fn rounding_noise_between_facets_closes() {
             &out,
             &[
                 "8 of 36 vertices\n",
-                " vertices equal to others; ",
+                " vertices merged: ",
+                " equal to others, ",
                 "within 1.73",
                 "watertight         yes",
             ],

@@ -20,6 +20,7 @@ fn bounce(count: usize, scale: f64, duration: f64) -> Vec<EnergyRow> {
             drag: scale * (100.0 - left) * 0.8,
             slip: scale * (100.0 - left) * 0.2,
             dashpot: 0.0,
+            numerical: 0.0,
             work: 0.0,
             total: scale * 60.0,
             residual: scale * 100.0 * noise * fraction,

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 use proptest::prelude::*;
 use sha2::{Digest, Sha256};
-use tumble::{ContactKind, DVec3, PairSpring};
+use tumble::{ContactImpulse, ContactKind, DVec3, PairSpring};
 use tumble_io::checkpoint::{
     Checkpoint, CheckpointError, MAGIC, VERSION, parse_checkpoint, read_checkpoint,
 };
@@ -66,26 +66,38 @@ fn a_checkpoint_is_read_back_unchanged() {
     );
 }
 
-/// Version 3 lacks the compensation of the position, after the position of each body.
-#[test]
-fn a_checkpoint_of_version_3_is_read_with_no_compensation_of_the_position() {
-    let mut written = checkpoint().clone();
-    assert_ne!(written.state.bodies[0].position_compensation, DVec3::ZERO);
-    written.state.bodies[0].position_compensation = DVec3::ZERO;
-    let mut bytes = written.to_bytes();
+/// The bytes as version 3 or 4 has them, of a checkpoint without impulses.
+fn as_version(version: u32, mut bytes: Vec<u8>) -> Vec<u8> {
+    let before = bytes.len();
     let section = bytes.windows(4).position(|name| name == b"STAT").unwrap();
-    // name, length, then step, time, number of bodies and the position
-    let compensation = section + 4 + 8 + 3 * 8 + 3 * 8;
-    bytes.drain(compensation..compensation + 3 * 8);
-    let shorten = |bytes: &mut Vec<u8>, at: usize| {
-        let length = u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) - 3 * 8;
+    // from the end: checksum, three totals of version 5, six older ones, then the time since the kick and the number
+    // of impulses
+    let totals = bytes.len() - 32 - 9 * 8;
+    bytes.drain(totals + 6 * 8..totals + 9 * 8);
+    bytes.drain(totals - 2 * 8..totals);
+    if version == 3 {
+        // name, length, then step, time, number of bodies and the position of the only body
+        let compensation = section + 4 + 8 + 3 * 8 + 3 * 8;
+        bytes.drain(compensation..compensation + 3 * 8);
+    }
+    let removed = (before - bytes.len()) as u64;
+    for at in [MAGIC.len() + 4, section + 4] {
+        let length = u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) - removed;
         bytes[at..at + 8].copy_from_slice(&length.to_le_bytes());
-    };
-    shorten(&mut bytes, MAGIC.len() + 4);
-    shorten(&mut bytes, section + 4);
-    bytes[MAGIC.len()..][..4].copy_from_slice(&3u32.to_le_bytes());
-    let read = parse_checkpoint(&with_checksum(bytes)).unwrap();
-    assert_eq!(read, written);
+    }
+    bytes[MAGIC.len()..][..4].copy_from_slice(&version.to_le_bytes());
+    with_checksum(bytes)
+}
+
+/// Version 3 lacks the compensation of the position, and versions before 5 what the integrator `implicit` adds.
+#[test]
+fn checkpoints_of_older_versions_are_read() {
+    let written = checkpoint();
+    assert_eq!(parse_checkpoint(&as_version(4, written.to_bytes())).unwrap(), *written);
+    let mut without = written.clone();
+    assert_ne!(without.state.bodies[0].position_compensation, DVec3::ZERO);
+    without.state.bodies[0].position_compensation = DVec3::ZERO;
+    assert_eq!(parse_checkpoint(&as_version(3, written.to_bytes())).unwrap(), without);
 }
 
 #[test]
@@ -114,8 +126,8 @@ fn negative_zero_and_subnormal_numbers_are_preserved() {
     assert!(read.state.bodies[0].position.x.is_sign_negative());
 }
 
-/// A checkpoint with friction springs between bodies, which the scene itself does not produce.
-fn with_pair_springs() -> Checkpoint {
+/// A checkpoint with contacts between bodies, which the scene itself does not produce.
+fn with_pair_contacts() -> Checkpoint {
     let kinds = [
         ContactKind::SphereWall,
         ContactKind::SphereSphere,
@@ -134,28 +146,45 @@ fn with_pair_springs() -> Checkpoint {
             stretch: DVec3::new(1e-3, -0.0, f64::from(i)),
         })
         .collect();
-    checkpoint.state.totals.work = -12.5;
+    checkpoint.state.pair_impulses = vec![
+        ContactImpulse { normal: 0.25, tangential: DVec3::new(-1.0, 0.0, 1e-300) },
+        ContactImpulse { normal: -0.0, tangential: DVec3::ZERO },
+    ];
+    checkpoint.state.since_kick = 1e-5;
+    let totals = &mut checkpoint.state.totals;
+    (totals.work, totals.numerical) = (-12.5, 3e-9);
+    (totals.iterations, totals.not_converged) = (77, 1);
     checkpoint
 }
 
 #[test]
-fn springs_between_bodies_and_work_are_preserved() {
-    let written = with_pair_springs();
+fn contacts_between_bodies_and_totals_are_preserved() {
+    let written = with_pair_contacts();
     let read = parse_checkpoint(&written.to_bytes()).unwrap();
     assert_eq!(read, written);
     assert_eq!(read.state.hash(), written.state.hash());
 }
 
 #[test]
-fn invalid_spring_kinds_and_counts_are_rejected() {
-    let bytes = with_pair_springs().to_bytes();
-    // from the end: checksum, totals, then the last spring
-    let totals = bytes.len() - 32 - 6 * 8;
-    let kind = totals - 41 + 8;
+fn invalid_contact_kinds_and_counts_are_rejected() {
+    let bytes = with_pair_contacts().to_bytes();
+    // from the end: checksum, totals, the time since the kick, the impulses and their number, then the last spring
+    let impulses = bytes.len() - 32 - 9 * 8 - 8 - 2 * 32 - 8;
+    assert_eq!(bytes[impulses], 2);
+    let kind = impulses - 41 + 8;
     assert_eq!(bytes[kind], 3);
-    let count = totals - 4 * 41 - 8;
+    let count = impulses - 4 * 41 - 8;
     assert_eq!(bytes[count], 4);
-    for (at, value) in [(kind, 4), (kind, 255), (count, 3), (count, 5), (count + 7, 255)] {
+    for (at, value) in [
+        (kind, 4),
+        (kind, 255),
+        (count, 3),
+        (count, 5),
+        (count + 7, 255),
+        (impulses, 1),
+        (impulses, 3),
+        (impulses + 7, 255),
+    ] {
         let mut other = bytes.clone();
         other[at] = value;
         let error = parse_checkpoint(&with_checksum(other)).unwrap_err();
@@ -189,13 +218,13 @@ fn other_files_are_rejected_with_the_reason() {
     assert_error(&later, "damaged");
     assert_error(
         &with_checksum(later),
-        "format version 10, but this program reads versions 3 to 4",
+        "format version 11, but this program reads versions 3 to 5",
     );
     let mut earlier = checkpoint().to_bytes();
     earlier[MAGIC.len()..][..4].copy_from_slice(&2u32.to_le_bytes());
     assert_error(
         &with_checksum(earlier),
-        "format version 2, but this program reads versions 3 to 4",
+        "format version 2, but this program reads versions 3 to 5",
     );
     let folder = tempfile::tempdir().unwrap();
     assert!(matches!(read_checkpoint(folder.path()), Err(CheckpointError::NotAFile)));

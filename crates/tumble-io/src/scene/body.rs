@@ -7,10 +7,14 @@ use tumble::{DVec3, MassModel, Sampling};
 use super::common::{material, orientation};
 use super::description::{BodyScene, Copies, Geometry, MASS_MODELS, MassScene, MeshScene};
 use super::motion::motion;
+use super::problem::Problem;
 use super::reader::{Range, Reader};
 use super::shape::{SHAPE_KEYS, shape_scene};
 use super::surface::surface;
 use crate::mesh::{Repair, Weld};
+
+/// Keys that give the geometry; exactly one is needed.
+const GEOMETRY_KEYS: [&str; 3] = ["mesh", "shape", "particles"];
 
 /// Keys that give the mass; only one may be given.
 pub const MASS_KEYS: [&str; 3] = ["particle_mass", "mass", "density"];
@@ -29,9 +33,9 @@ pub fn body(reader: Reader, index: usize) -> BodyScene {
             reader.problem("name", "must not be empty");
             String::new()
         }
-        // names are a column of trajectory.csv
-        Some(name) if name.contains(|c: char| c == ',' || c == '"' || c.is_control()) => {
-            reader.problem("name", "must not contain commas, quotes, line breaks or the like");
+        // a line of trajectory.csv is a row
+        Some(name) if name.contains(char::is_control) => {
+            reader.problem("name", "must not contain line breaks or other control characters");
             name.to_owned()
         }
         Some(name) if name.chars().nth(MAX_NAME_LENGTH).is_some() => {
@@ -65,7 +69,7 @@ pub fn body(reader: Reader, index: usize) -> BodyScene {
 }
 
 fn geometry(reader: &Reader) -> Option<Geometry> {
-    match reader.only_one(&["mesh", "shape", "particles"]) {
+    match reader.only_one(&GEOMETRY_KEYS) {
         Some("mesh") => {
             let weld = reader.switch_or_number(
                 "weld",
@@ -93,7 +97,9 @@ fn geometry(reader: &Reader) -> Option<Geometry> {
         None => {
             reader.mark_known(&SHAPE_KEYS);
             reader.mark_known(&["weld", "mesh_repair", "mesh_sha256", "mesh_origin"]);
-            reader.problem("", "needs one of `mesh = \"FILE\"`, `shape = \"NAME\"` or `particles = [[x, y, z], …]`");
+            let message = "needs one of `mesh = \"FILE\"`, `shape = \"NAME\"` or `particles = [[x, y, z], …]`";
+            let problem = Problem::new(reader.place_of(""), reader.key(""), message);
+            reader.missing(&GEOMETRY_KEYS, problem);
             None
         }
     }
@@ -105,7 +111,9 @@ fn sampling(reader: &Reader) -> Sampling {
     if let Some(kind @ ("surface" | "volume")) = choice {
         if !reader.has("spacing") {
             let message = format!("\"{kind}\" needs `spacing`, the distance between particles (m)");
-            reader.problem("sampling", message);
+            let problem =
+                Problem::new(reader.place_of("sampling"), reader.key("sampling"), message);
+            reader.missing(&["spacing"], problem);
         }
         let spacing = spacing.unwrap_or(1.0);
         return if kind == "surface" {
@@ -138,9 +146,7 @@ fn copies(reader: Reader) -> Option<Copies> {
     let spacing = reader.vector("spacing");
     let seed = reader.integer("seed", 0, i64::MAX).map(|seed| seed as u64);
     for key in ["count", "spacing"] {
-        if !reader.has(key) {
-            reader.problem(key, "is missing: copies need `count` and `spacing`, each [x, y, z]");
-        }
+        reader.need(key, "is missing: copies need `count` and `spacing`, each [x, y, z]");
     }
     let count = count.filter(|count| {
         let whole = count.iter().all(|n| n.fract() == 0.0);

@@ -46,10 +46,9 @@ fn read_oscillation(reader: Reader) -> Option<Oscillation> {
     let frequency = reader.number("frequency", Range::Positive);
     let phase = reader.number("phase", Range::Finite).unwrap_or(0.0);
     for key in ["amplitude", "frequency"] {
-        if !reader.has(key) {
-            let message = "is missing: an oscillation needs `amplitude`, [x, y, z] in m, and `frequency` in Hz";
-            reader.problem(key, message);
-        }
+        let message =
+            "is missing: an oscillation needs `amplitude`, [x, y, z] in m, and `frequency` in Hz";
+        reader.need(key, message);
     }
     reader.finish();
     Some(Oscillation { amplitude: amplitude?, frequency: frequency?, phase })

@@ -76,7 +76,7 @@ fn bodies(top: &Reader, problems: &RefCell<Vec<Problem>>) -> (Vec<BodyScene>, Ve
     if tables.is_empty() && problems.borrow().len() == before {
         let problem = Problem::new(top.place_of("body"), "", "the scene has no body");
         let help = "add one, for example:\n[[body]]\nshape = \"sphere\"";
-        top.missing("body", problem.help(help));
+        top.missing(&["body"], problem.help(help));
     }
     let read = |(index, table)| {
         let before = problems.borrow().len();
@@ -113,17 +113,10 @@ fn integrator(top: &Reader) -> Integrator {
     }
 }
 
-/// Reports that a key is missing in this table.
-fn missing(reader: &Reader, key: &'static str, message: &str) {
-    reader.missing(key, Problem::new(reader.place_of(key), reader.key(key), message));
-}
-
 fn box_walls(reader: Reader) -> Option<BoxScene> {
     let (min, max) = (reader.vector("min"), reader.vector("max"));
     for key in ["min", "max"] {
-        if !reader.has(key) {
-            missing(&reader, key, "is missing: a box needs `min` and `max`, two corners [x, y, z]");
-        }
+        reader.need(key, "is missing: a box needs `min` and `max`, two corners [x, y, z]");
     }
     let open = reader.choices("open", &WallBox::FACES).unwrap_or_default();
     let walls = WallBox {
@@ -142,10 +135,7 @@ fn box_walls(reader: Reader) -> Option<BoxScene> {
 
 fn wall(reader: Reader) -> Option<WallScene> {
     let normal = reader.vector("normal");
-    if !reader.has("normal") {
-        let message = "is missing: a wall needs the direction out of it, [x, y, z]";
-        missing(&reader, "normal", message);
-    }
+    reader.need("normal", "is missing: a wall needs the direction out of it, [x, y, z]");
     let offset = reader.number("offset", Range::Finite).unwrap_or(0.0);
     let plane = normal.and_then(|normal| {
         // do not normalise twice: the bits would change

@@ -54,8 +54,8 @@ pub struct Reader<'a> {
     place: Place,
     path: String,
     requested: RefCell<Vec<&'static str>>,
-    /// Keys that are needed and not given, each with its problem.
-    missing: RefCell<Vec<(&'static str, Problem)>>,
+    /// What is needed and not given: the keys any of which would do, and the problem.
+    missing: RefCell<Vec<(Vec<&'static str>, Problem)>>,
     problems: &'a RefCell<Vec<Problem>>,
 }
 
@@ -96,11 +96,18 @@ impl<'a> Reader<'a> {
         self.problems.borrow_mut().push(problem);
     }
 
-    /// Reports that a key is needed, unless [`finish`](Self::finish) finds a misspelling of it, which is then the
-    /// only problem.
-    pub fn missing(&self, key: &'static str, problem: Problem) {
+    /// Reports that a key is needed if it is not given, unless [`finish`](Self::finish) finds a misspelling of it,
+    /// which is then the only problem.
+    pub fn need(&self, key: &'static str, message: impl Into<String>) {
+        if !self.has(key) {
+            self.missing(&[key], Problem::new(self.place.clone(), self.key(key), message));
+        }
+    }
+
+    /// Reports that one of `keys` is needed, unless [`finish`](Self::finish) finds a misspelling of one of them.
+    pub fn missing(&self, keys: &[&'static str], problem: Problem) {
         if self.is_table {
-            self.missing.borrow_mut().push((key, problem));
+            self.missing.borrow_mut().push((keys.to_vec(), problem));
         }
     }
 
@@ -338,7 +345,7 @@ impl<'a> Reader<'a> {
             known.dedup();
             let help = match meant(&entry.key, &known) {
                 Some(near) => {
-                    missing.retain(|(key, _)| *key != near);
+                    missing.retain(|(keys, _)| !keys.contains(&near));
                     format!("did you mean `{near}`?")
                 }
                 None => format!("known here: {}", quoted_keys(&known)),
