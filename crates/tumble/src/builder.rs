@@ -13,6 +13,7 @@ mod weighted_shapes;
 
 use self::body_model::Shared;
 use self::checks::{behind_walls, duplicate_names, overlaps};
+use crate::stage::DIVISIONS_AT_START;
 use crate::{
     BuildError, BuildErrors, Integrator, MaterialOverride, Model, Overlaps, State, Surface,
     WallPlane, World, critical_dt,
@@ -52,6 +53,9 @@ impl WorldBuilder {
             names: Vec::with_capacity(self.bodies.len()),
         };
         let (mut state, mut shared) = (State::default(), Shared::default());
+        if self.integrator == Integrator::Implicit {
+            state.step_divisions = DIVISIONS_AT_START;
+        }
         for (index, body) in self.bodies.iter().enumerate() {
             let name = body.name.clone().unwrap_or_else(|| format!("body {index}"));
             match self.model_and_state(&name, body, &mut shared) {

@@ -12,7 +12,7 @@ use crate::{Model, State, Surface};
 /// The largest exponent.
 pub(crate) const MOST_DIVISIONS: u32 = 6;
 /// The exponent of the first step, which has no impulses to begin with.
-const AT_START: u32 = 2;
+pub(crate) const DIVISIONS_AT_START: u32 = 2;
 /// What is added to the exponent where the iterations do not converge.
 const AFTER_FAILURE: u32 = 2;
 /// The exponent shrinks after a part with less than this share of the largest number of iterations.
@@ -43,12 +43,9 @@ impl ImplicitSteps {
         if self.done == whole {
             return None;
         }
-        if state.time == 0.0 {
-            state.step_divisions = AT_START;
-        }
         let divisions = state.step_divisions.max(divisions_for_speed(model, state));
         self.size = whole >> divisions.min(MOST_DIVISIONS);
-        while self.done % self.size != 0 {
+        while !self.done.is_multiple_of(self.size) {
             self.size /= 2;
         }
         let part = |size: u32| model.dt * (f64::from(size) / f64::from(whole));
@@ -79,7 +76,7 @@ impl ImplicitSteps {
         if has_converged
             && iterations <= model.solver.max_iterations / EASY
             && self.done == self.size
-            && state.step % STEPS_BETWEEN == 0
+            && state.step.is_multiple_of(STEPS_BETWEEN)
         {
             state.step_divisions = state.step_divisions.saturating_sub(1);
         }

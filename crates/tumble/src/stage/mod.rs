@@ -26,7 +26,7 @@ pub use euler::euler;
 pub use free_flight::find_free_flight;
 pub use gravity::gravity;
 pub use implicit_steps::ImplicitSteps;
-pub(crate) use implicit_steps::MOST_DIVISIONS;
+pub(crate) use implicit_steps::{DIVISIONS_AT_START, MOST_DIVISIONS};
 pub use kick::kick;
 pub use kinematic::move_kinematic;
 pub use mouse_spring::{MouseSpring, apply_mouse_spring};

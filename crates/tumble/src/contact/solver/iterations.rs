@@ -117,7 +117,7 @@ fn visit_pack<S: Simd>(
         let row = &mut rows[place(number, count, is_backward)];
         let [normal_change, square, impulse] = pair.visit(simd, row);
         change = change + normal_change * normal_change + square;
-        total = total + impulse * impulse;
+        total += impulse * impulse;
     }
     // back again: the contacts of two bodies depend on each other most of all, and their bodies are at hand
     for number in 1..count {

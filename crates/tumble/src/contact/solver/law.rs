@@ -166,10 +166,10 @@ impl LanePatch {
             let touches = depth.simd_gt(zero);
             let k = load(&law.stiffness);
             let size = k * depth;
-            stiffness = stiffness + touches.select(k, zero);
-            friction_spring = friction_spring + touches.select(load(&law.friction_spring), zero);
-            damping = damping + touches.select(load(&law.damping), zero);
-            force = force + size;
+            stiffness += touches.select(k, zero);
+            friction_spring += touches.select(load(&law.friction_spring), zero);
+            damping += touches.select(load(&law.damping), zero);
+            force += size;
             deepest = depth.simd_gt(deepest).select(depth, deepest);
             total += Vec3x8::load(simd, &row.normal) * size;
             for (torque, lever) in torques.iter_mut().zip(&row.levers) {
@@ -180,7 +180,7 @@ impl LanePatch {
         let reduced = inertia[0].inverse_mass + inertia[1].inverse_mass;
         let mut mobility = reduced * total.dot(total);
         for (inertia, torque) in inertia.iter().zip(torques) {
-            mobility = mobility + torque.dot(inertia.turned(torque));
+            mobility += torque.dot(inertia.turned(torque));
         }
         let inverse_mass = mobility / (force * force);
         let inverse_mass = inverse_mass.simd_gt(reduced).select(inverse_mass, reduced);
@@ -285,9 +285,9 @@ impl<S: Simd> LaneConstants<S> {
             let arm = Vec3x8::load(simd, arm);
             let (l1, l2) = (arm.cross(t1), arm.cross(t2));
             let turned = inertia.turned(l1);
-            matrix[0] = matrix[0] + inertia.inverse_mass + l1.dot(turned);
-            matrix[1] = matrix[1] + l2.dot(turned);
-            matrix[2] = matrix[2] + inertia.mobility(l2);
+            matrix[0] += inertia.inverse_mass + l1.dot(turned);
+            matrix[1] += l2.dot(turned);
+            matrix[2] += inertia.mobility(l2);
         }
         let half = f64x8::splat(simd, 0.5);
         let [xx, xy, yy] = matrix;
@@ -322,6 +322,7 @@ pub(super) struct Weights<S: Simd> {
     damped_after: f64x8<S>,
     damped_before: f64x8<S>,
     half: f64x8<S>,
+    zero: f64x8<S>,
 }
 
 impl<S: Simd> Weights<S> {
@@ -334,6 +335,7 @@ impl<S: Simd> Weights<S> {
             damped_after: (splat(1.0) + s) * splat(0.5),
             damped_before: (splat(1.0) - s) * splat(0.5),
             half: splat(0.5),
+            zero: splat(0.0),
         }
     }
 
@@ -415,10 +417,10 @@ impl<S: Simd> LinearLaw<S> {
     /// b, for the gap or stretch at the kick, the velocity before it and the acceleration.
     #[inline(always)]
     fn constant(&self, gap: f64x8<S>, before: f64x8<S>, acceleration: f64x8<S>) -> f64x8<S> {
-        let velocities = (before, before - before);
+        let velocities = (before, self.weights.zero);
         let force = self.k * self.weights.gap(self.h, gap, velocities, acceleration)
             + self.c * self.weights.velocity(self.h, velocities, acceleration);
-        (before - before) - self.h * force
+        self.weights.zero - self.h * force
     }
 }
 

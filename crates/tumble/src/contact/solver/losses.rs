@@ -129,9 +129,9 @@ impl<S: Simd> Sums<S> {
         let [friction_dashpot, slip, friction_numerical] =
             contact.tangential(simd, row, law, (slides, sliding), across);
         self.dashpot = self.dashpot + dashpot + friction_dashpot;
-        self.slip = self.slip + slip;
+        self.slip += slip;
         self.numerical = self.numerical + numerical + friction_numerical;
-        self.belt = self.belt + tangential.dot(surface);
+        self.belt += tangential.dot(surface);
         (normal, tangential)
     }
 }
