@@ -40,11 +40,14 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
         ),
         ("", format!("{} J dissipated", number(dissipated))),
         ("residual", format!("{} J{share}", number(s.energy_residual))),
+    ];
+    rows.extend(solver(s).map(|text| ("solver", text)));
+    rows.extend([
         ("deepest contact", format!("{} m during the run", number(s.max_depth))),
         ("", final_depths(s)),
         ("results", shown(folder.path())),
         ("animation", shown(&folder.path().join("motion.html"))),
-    ];
+    ]);
     rows.extend(finished.notes.iter().map(|note| ("note", note.clone())));
     let warnings = warnings(s, relative).into_iter().chain(finished.warnings.iter().cloned());
     rows.extend(warnings.map(|warning| ("warning", warning)));
@@ -70,6 +73,15 @@ fn integrator(s: &Summary) -> String {
     format!("{}, dt = {} s{critical}", s.integrator, number(s.dt))
 }
 
+/// What the implicit solver did; nothing with another integrator.
+fn solver(s: &Summary) -> Option<String> {
+    let solver = s.solver.as_ref()?;
+    let per_step = solver.iterations as f64 / s.steps.max(1) as f64;
+    let lost = number(solver.energy_numerical);
+    let iterations = number(per_step);
+    Some(format!("{iterations} iterations per step, {lost} J lost to the implicit solution"))
+}
+
 /// All steps of the run and, if it was resumed, how many of them were taken now.
 fn steps(finished: &FinishedRun) -> String {
     let all = count(finished.summary.steps);
@@ -90,9 +102,14 @@ fn final_depths(s: &Summary) -> String {
 /// Reasons not to trust the results.
 fn warnings(s: &Summary, relative_residual: f64) -> Vec<String> {
     let mut warnings = Vec::new();
-    if let Some(critical) = s.critical_dt.filter(|&critical| s.dt > critical) {
+    let is_explicit = s.integrator != "implicit";
+    if let Some(critical) = s.critical_dt.filter(|&critical| is_explicit && s.dt > critical) {
         let critical = number(critical);
         warnings.push(format!("dt is above the critical {critical} s: contacts are unstable"));
+    }
+    if let Some(solver) = s.solver.as_ref().filter(|solver| solver.steps_not_converged > 0) {
+        let count = count(solver.steps_not_converged);
+        warnings.push(format!("the solver did not converge in {count} steps: use a smaller dt"));
     }
     if relative_residual.abs() > 0.01 {
         let remedy = if s.integrator == "euler" {

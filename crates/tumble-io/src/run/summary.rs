@@ -22,8 +22,11 @@ pub struct ContactSteps {
 }
 
 impl ContactSteps {
-    /// `None` if no contact has a dashpot.
+    /// `None` if no contact has a dashpot, and with the integrator `implicit`, which needs no resolution of contacts.
     pub fn new(world: &World) -> Option<Self> {
+        if world.model().integrator == Integrator::Implicit {
+            return None;
+        }
         let time = contact_time(world.model())?;
         let dt_for_restitution = time.dt_for_restitution();
         let steps = time.seconds / world.dt();
