@@ -70,11 +70,11 @@ fn a_checkpoint_is_read_back_unchanged() {
 fn as_version(version: u32, mut bytes: Vec<u8>) -> Vec<u8> {
     let before = bytes.len();
     let section = bytes.windows(4).position(|name| name == b"STAT").unwrap();
-    // from the end: checksum, three totals of version 5, six older ones, then the time since the kick and the number
-    // of impulses
+    // from the end: checksum, three totals of version 5, six older ones, then the division of steps, the time since the
+    // kick and the number of impulses
     let totals = bytes.len() - 32 - 9 * 8;
     bytes.drain(totals + 6 * 8..totals + 9 * 8);
-    bytes.drain(totals - 2 * 8..totals);
+    bytes.drain(totals - 2 * 8 - 4..totals);
     if version == 3 {
         // name, length, then step, time, number of bodies and the position of the only body
         let compensation = section + 4 + 8 + 3 * 8 + 3 * 8;
@@ -150,7 +150,7 @@ fn with_pair_contacts() -> Checkpoint {
         ContactImpulse { normal: 0.25, tangential: DVec3::new(-1.0, 0.0, 1e-300) },
         ContactImpulse { normal: -0.0, tangential: DVec3::ZERO },
     ];
-    checkpoint.state.since_kick = 1e-5;
+    (checkpoint.state.since_kick, checkpoint.state.step_divisions) = (1e-5, 3);
     let totals = &mut checkpoint.state.totals;
     (totals.work, totals.numerical) = (-12.5, 3e-9);
     (totals.iterations, totals.not_converged) = (77, 1);
@@ -168,8 +168,8 @@ fn contacts_between_bodies_and_totals_are_preserved() {
 #[test]
 fn invalid_contact_kinds_and_counts_are_rejected() {
     let bytes = with_pair_contacts().to_bytes();
-    // from the end: checksum, totals, the time since the kick, the impulses and their number, then the last spring
-    let impulses = bytes.len() - 32 - 9 * 8 - 8 - 2 * 32 - 8;
+    // from the end: checksum, totals, the division of steps, the time since the kick, the impulses and their number, then the last spring
+    let impulses = bytes.len() - 32 - 9 * 8 - 4 - 8 - 2 * 32 - 8;
     assert_eq!(bytes[impulses], 2);
     let kind = impulses - 41 + 8;
     assert_eq!(bytes[kind], 3);

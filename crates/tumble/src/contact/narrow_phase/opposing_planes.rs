@@ -122,15 +122,16 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_touches_where_it_is_above_the_face() {
+    fn an_edge_touches_where_it_is_deepest() {
         let mesh = Primitive::Box { size: DVec3::splat(2.0), divisions: 1 }.mesh().unwrap();
         let mesh = SignedDistance::new(&mesh).unwrap();
         let normals = [DVec3::NEG_Y, DVec3::NEG_Z];
         let view = view(&normals, &mesh, DMat3::IDENTITY).unwrap();
-        // half of it beyond the rim, deeper there
-        let half = DVec3::new(1.0, -1e-3, 0.0);
-        let (offset, touching) =
-            contact(&view, &mesh, half, DVec3::new(1.0, 1.0, 0.0), 1e-6).unwrap();
-        assert!(offset.x <= 5e-3 && touching.outward.y > 0.999, "{offset} {touching:?}");
+        // one end is deeper by 2 mm than the other
+        let half = DVec3::new(0.5, -1e-3, 0.0);
+        let place = DVec3::new(0.2, 1.0 - 1e-4, 0.0);
+        let (offset, touching) = contact(&view, &mesh, half, place, 1e-6).unwrap();
+        assert!((offset - half).length() < 1e-6 && touching.outward == DVec3::Y, "{offset}");
+        assert!((touching.depth - 1.1e-3).abs() < 2e-4 && touching.weight == 1.0, "{touching:?}");
     }
 }
