@@ -24,7 +24,7 @@ pub(super) struct SolverBody {
 }
 
 impl SolverBody {
-    /// A body at the kick of a step that is `h` (s) long, at `time` (s).
+    /// A body at the kick, at `time` (s).
     pub fn new(model: &Model, body: &BodyModel, pose: &BodyPose, time: f64) -> Self {
         let (velocity, angular_velocity) = (pose.velocity, pose.angular_velocity);
         let at_rest = Self { velocity, angular_velocity, ..Self::default() };

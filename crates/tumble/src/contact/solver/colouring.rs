@@ -49,16 +49,16 @@ impl Colouring {
         self.sort(groups, if extra > COLOURS { extra } else { count });
     }
 
-    /// Sorts the groups by colour, and then by their number of contacts; the order is stable.
+    /// Sorts the groups by colour, by their number of contacts, and by their index: a stable sort would allocate.
     fn sort(&mut self, groups: &[Group], count: u32) {
         self.order.clear();
         self.order.extend(0..groups.len() as u32);
         let colours = &self.colours;
         let key = |&group: &u32| {
             let group = group as usize;
-            (colours[group], u32::MAX - groups[group].len())
+            (colours[group], u32::MAX - groups[group].len(), group)
         };
-        self.order.sort_by_key(key);
+        self.order.sort_unstable_by_key(key);
         let order = &self.order;
         self.starts.clear();
         self.starts.extend(

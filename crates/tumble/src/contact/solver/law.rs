@@ -134,7 +134,11 @@ fn velocities_before<S: Simd>(simd: S, row: &Row, law: &mut RowLaw, motion: &[La
 
 /// Acceleration of the first bodies relative to the second, without contact (m/s²).
 #[inline(always)]
-fn relative_acceleration<S: Simd>(simd: S, pack: &Pack, bodies: &[SolverBody]) -> Vec3x8<S> {
+pub(super) fn relative_acceleration<S: Simd>(
+    simd: S,
+    pack: &Pack,
+    bodies: &[SolverBody],
+) -> Vec3x8<S> {
     let mut columns = Columns::default();
     for lane in 0..LANES {
         let of_body = |index: u32| bodies[index as usize].acceleration;

@@ -9,10 +9,10 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::bodies::{LaneInertia, LaneMotion, SolverBody};
-use super::law::{Step, Weights, relative_velocity};
+use super::law::{Step, Weights, relative_acceleration, relative_velocity};
 use super::rows::{Pack, Row, RowLaw};
 use crate::RunTotals;
-use crate::lanes::{Columns, LANES, Vec3x8, largest, positive, set, sum};
+use crate::lanes::{Columns, LANES, Vec3x8, largest, positive, sum};
 
 /// Impulses and losses of a pack.
 pub(super) struct Account {
@@ -36,7 +36,7 @@ pub(super) fn account<S: Simd>(
     ];
     let zero = f64x8::splat(simd, 0.0);
     let zeros = Vec3x8::splat(simd, DVec3::ZERO);
-    let acceleration = acceleration(simd, pack, bodies);
+    let acceleration = relative_acceleration(simd, pack, bodies);
     let mut sums = Sums { dashpot: zero, slip: zero, numerical: zero, belt: zero, depth: zero };
     let (mut impulse, mut torques) = (zeros, [zeros; 2]);
     for (row, law) in rows.iter().zip(laws) {
@@ -64,16 +64,6 @@ pub(super) fn account<S: Simd>(
     };
     let [torque, other_torque] = torques;
     Account { impulses: [impulse.store(), torque.store(), other_torque.store()], losses }
-}
-
-#[inline(always)]
-fn acceleration<S: Simd>(simd: S, pack: &Pack, bodies: &[SolverBody]) -> Vec3x8<S> {
-    let mut columns = Columns::default();
-    for lane in 0..LANES {
-        let of_body = |index: u32| bodies[index as usize].acceleration;
-        set(&mut columns, lane, of_body(pack.first[lane]) - of_body(pack.second[lane]));
-    }
-    Vec3x8::load(simd, &columns)
 }
 
 /// Sums over the rows of each lane (J, and m for the depth).

@@ -105,10 +105,9 @@ impl Solver {
             for (lane, _) in pack.lengths.iter().enumerate().filter(|(_, length)| **length > 0) {
                 let [force, torque, other_torque] =
                     impulses.each_ref().map(|columns| vector(columns, lane));
-                let sign = -1.0;
                 self.impulses[pack.first[lane] as usize] += Wrench { force, torque };
                 self.impulses[pack.second[lane] as usize] +=
-                    Wrench { force: force * sign, torque: other_torque * sign };
+                    Wrench { force: -force, torque: -other_torque };
             }
         }
     }

@@ -85,8 +85,6 @@ pub(super) struct Rows {
     pub packs: Vec<Pack>,
     pub rows: Vec<Row>,
     pub laws: Vec<RowLaw>,
-    /// Where the packs of each colour begin, and the end.
-    pub colours: Vec<u32>,
     /// For each contact, its row and lane.
     pub places: Vec<(u32, u32)>,
 }
@@ -107,11 +105,9 @@ impl Rows {
     /// Puts all groups into packs, and their contacts into rows.
     pub fn fill(&mut self, source: &Source, colouring: &Colouring) {
         self.packs.clear();
-        self.colours.clear();
         self.places.clear();
         self.places.resize(source.contacts.len(), (0, 0));
         let mut row_count = 0;
-        self.colours.push(0);
         for range in colouring.starts.windows(2) {
             let groups = &colouring.order[range[0] as usize..range[1] as usize];
             for groups in groups.chunks(LANES) {
@@ -119,7 +115,6 @@ impl Rows {
                 row_count = pack.end;
                 self.packs.push(pack);
             }
-            self.colours.push(self.packs.len() as u32);
         }
         self.rows.clear();
         self.rows.resize(row_count as usize, Row::default());
