@@ -58,6 +58,7 @@ say "hostile input: a bounded run of every fuzz target"
 fuzz/run.sh 10
 
 say "packages: each published crate builds from what it would upload"
-cargo publish --workspace --dry-run --allow-dirty --locked
+# In a folder of its own: Cargo unpacks a package once for each path it was made in, and never looks whether it has changed.
+cargo publish --workspace --dry-run --allow-dirty --locked --target-dir "$out/packages"
 
 say "all checks passed"
