@@ -131,6 +131,7 @@ impl Material {
             stiffness: k,
             damping,
             damping_ratio,
+            asked_damping_ratio: damping_ratio,
             friction: self.friction_stiffness,
             friction_spring: self.friction_spring.unwrap_or(2.0 / 7.0 * k),
             friction_damping: self.friction_damping.unwrap_or(0.0),
@@ -152,6 +153,8 @@ pub struct ContactLaw {
     /// Damping ratio ζ of all contacts between two bodies, or of a body and a wall, at one instant. It adds to `damping` the
     /// dashpots that give a restitution.
     pub damping_ratio: f64,
+    /// The damping ratio of the restitution that the materials ask for, whether their dashpots are among those given or not.
+    pub asked_damping_ratio: f64,
     /// Coulomb coefficient μ.
     pub friction: f64,
     /// Tangential spring k_t (N/m).

@@ -61,16 +61,18 @@ impl PairMaterial {
     /// therefore have the law of that material.
     pub fn law(&self, other: &Self) -> ContactLaw {
         let mean = |of: fn(&Self) -> f64| 0.5 * (of(self) + of(other));
+        let damping_ratio = mean(|material| match material.damping {
+            PairDamping::Dashpot(_) => 0.0,
+            PairDamping::Ratio(zeta) => zeta,
+        });
         ContactLaw {
             stiffness: harmonic_mean(self.stiffness, other.stiffness),
             damping: mean(|material| match material.damping {
                 PairDamping::Dashpot(c) => c,
                 PairDamping::Ratio(_) => 0.0,
             }),
-            damping_ratio: mean(|material| match material.damping {
-                PairDamping::Dashpot(_) => 0.0,
-                PairDamping::Ratio(zeta) => zeta,
-            }),
+            damping_ratio,
+            asked_damping_ratio: damping_ratio,
             friction: (self.friction * other.friction).sqrt(),
             friction_spring: harmonic_mean(self.friction_spring, other.friction_spring),
             friction_damping: mean(|material| material.friction_damping.unwrap_or(0.0)),

@@ -80,6 +80,7 @@ mod tests {
             start: 0,
             end: len,
             damping_ratio: 0.0,
+            asked_damping_ratio: 0.0,
             friction_damping_factor: 0.0,
         }
     }

@@ -22,8 +22,9 @@ pub(super) struct Group {
     /// Its contacts, as a range of all places.
     pub start: u32,
     pub end: u32,
-    /// Damping ratio of its patch, and the factor of its friction dashpots.
+    /// Damping ratio of its patch, that of the restitution that is asked for, and the factor of its friction dashpots.
     pub damping_ratio: f64,
+    pub asked_damping_ratio: f64,
     pub friction_damping_factor: f64,
 }
 
@@ -64,6 +65,7 @@ pub(super) fn collect(
                             start,
                             end: start,
                             damping_ratio: pair.law.damping_ratio,
+                            asked_damping_ratio: pair.law.asked_damping_ratio,
                             friction_damping_factor: pair.law.friction_damping_factor,
                         });
                     }

@@ -4,6 +4,7 @@ use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
 use super::bodies::{LaneInertia, LaneMotion, SolverBody};
 use super::law::relative_velocity;
+use super::normal_impulse::normal_impulse;
 use super::rows::{Pack, Row, Rows};
 use crate::SolverSettings;
 use crate::lanes::{Vec3x8, positive, sum};
@@ -173,9 +174,8 @@ impl<S: Simd> PackBodies<S> {
         let load = |values| f64x8::simd_from(simd, values);
         let (u, slip) = relative_velocity(simd, row, &self.motion);
         let old = load(row.impulse);
-        let (slope, mobility) = (load(row.slope), load(row.normal_mobility));
-        let by_law =
-            (load(row.offset) - slope * u + slope * mobility * old) * load(row.normal_factor);
+        let mobility = load(row.normal_mobility);
+        let by_law = normal_impulse(simd, row, u - mobility * old);
         let by_rebound = old + (load(row.rebound) - u) / mobility;
         let normal = positive(simd, by_law.simd_gt(by_rebound).select(by_law, by_rebound));
         row.impulse = normal.into();

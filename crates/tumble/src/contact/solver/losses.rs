@@ -165,7 +165,7 @@ impl<S: Simd> Contact<S> {
         is_rebound: fearless_simd::mask64x8<S>,
     ) -> [f64x8<S>; 2] {
         let load = |values: &[f64; LANES]| f64x8::simd_from(simd, *values);
-        let (impulse, gap, before) = (load(&row.impulse), load(&law.gap), load(&law.approach));
+        let (impulse, gap, before) = (load(&row.impulse), load(&law.gap), load(&row.approach));
         let work = self.zero - impulse * (before + after) * self.half;
         let ends = self.ends([gap, gap], [before, after], acceleration);
         let [start, end] = ends;

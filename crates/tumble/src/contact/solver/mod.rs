@@ -26,6 +26,7 @@ mod groups;
 mod iterations;
 mod law;
 mod losses;
+mod normal_impulse;
 mod results;
 mod rows;
 

@@ -22,6 +22,7 @@ pub(super) struct Pack {
     pub end: u32,
     /// See [`Group`].
     pub damping_ratio: [f64; LANES],
+    pub asked_damping_ratio: [f64; LANES],
     pub friction_damping_factor: [f64; LANES],
     /// Number of contacts of each lane.
     pub lengths: [u32; LANES],
@@ -42,6 +43,14 @@ pub(super) struct Row {
     /// 1/(1 + a w), and 1/m of the contact along n (1/kg).
     pub normal_factor: [f64; LANES],
     pub normal_mobility: [f64; LANES],
+    /// What a contact that closes or opens within the step needs (see [`super::normal_impulse`]): the gap at the beginning of the step (m),
+    /// NaN where the law is linear all the same; the gap at its end at u⁺ = 0; h/2, ½ k h, ½ c h, and the velocity u⁻ before the kick (m/s).
+    pub start_gap: [f64; LANES],
+    pub end_gap: [f64; LANES],
+    pub half_step: [f64; LANES],
+    pub half_stiffness: [f64; LANES],
+    pub half_damping: [f64; LANES],
+    pub approach: [f64; LANES],
     /// The velocity of rebound of an impact shorter than the step (m/s); else −∞.
     pub rebound: [f64; LANES],
     /// The same of friction.
@@ -69,8 +78,7 @@ pub(super) struct RowLaw {
     pub stretch: Columns,
     /// Velocity of the surface of the first body along itself, less that of the second (m/s).
     pub surface_velocity: Columns,
-    /// Velocity before the kick, along the normal and along the surfaces (m/s).
-    pub approach: [f64; LANES],
+    /// Velocity before the kick along the surfaces (m/s).
     pub sliding: Columns,
     /// 1 where the friction spring is there since the latest kick, and where it is kept for the next one.
     pub had_spring: [f64; LANES],
@@ -136,6 +144,7 @@ impl Rows {
             start,
             end: start,
             damping_ratio: zero,
+            asked_damping_ratio: zero,
             friction_damping_factor: zero,
             lengths: [0; LANES],
         };
@@ -143,6 +152,7 @@ impl Rows {
             let group = &source.groups[group as usize];
             (pack.first[lane], pack.second[lane]) = (group.first, group.second);
             pack.damping_ratio[lane] = group.damping_ratio;
+            pack.asked_damping_ratio[lane] = group.asked_damping_ratio;
             pack.friction_damping_factor[lane] = group.friction_damping_factor;
             pack.lengths[lane] = group.len();
             pack.end = pack.end.max(start + group.len());
