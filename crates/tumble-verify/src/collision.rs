@@ -198,7 +198,9 @@ fn order() -> Outcome {
     // short of their separation
     let time = 0.2 * PI / omega;
     let mut checks = Vec::new();
-    for (integrator, expected) in [(Integrator::Euler, 1.0), (Integrator::Splitting, 2.0)] {
+    let orders =
+        [(Integrator::Euler, 1.0), (Integrator::Splitting, 2.0), (Integrator::Implicit, 2.0)];
+    for (integrator, expected) in orders {
         let error = |step_count: u32| -> Result<f64, Error> {
             let distance = 2.0 * radius - depth;
             let mut world = free_space(material(k, 1.0, 0.0), time / f64::from(step_count))
@@ -225,7 +227,7 @@ fn order() -> Outcome {
 ///
 /// Neighbours are joined by springs with k/m = ω² that push but never pull. The equations of motion are
 /// integrated with the classical Runge–Kutta method.
-fn chain_velocities(omega: f64) -> [f64; 5] {
+pub(crate) fn chain_velocities(omega: f64) -> [f64; 5] {
     // five positions, then five velocities
     type Chain = [f64; 10];
     let derivative = |chain: &Chain| {

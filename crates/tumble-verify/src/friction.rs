@@ -1,6 +1,6 @@
 //! The tangential force of wall contacts: Coulomb friction with friction springs.
 
-use tumble::{Body, DMat3, DVec3, Damping, Material, Mesh, Shape, World};
+use tumble::{Body, DMat3, DVec3, Damping, Integrator, Material, Mesh, Shape, World};
 
 use crate::check::{Case, Check, Error, Outcome};
 use crate::setup::{self, G, step_until, world_with_floor};
@@ -64,32 +64,48 @@ fn sliding() -> Outcome {
 }
 
 /// A block on a slope of `angle` (rad): the floor is horizontal and gravity is tilted.
-fn world_with_slope(material: Material, angle: f64, dt: f64) -> Result<World, Error> {
+fn world_with_slope(
+    integrator: Integrator,
+    material: Material,
+    angle: f64,
+    dt: f64,
+) -> Result<World, Error> {
     let gravity = DVec3::new(libm::sin(angle), -libm::cos(angle), 0.0) * G;
-    Ok(world_with_floor(material).gravity(gravity).dt(dt).body(block(&material)?).build()?)
+    let world = world_with_floor(material).integrator(integrator).gravity(gravity).dt(dt);
+    Ok(world.body(block(&material)?).build()?)
 }
 
 fn slope() -> Outcome {
+    slope_checks(Integrator::Splitting, 1e-4, "")
+}
+
+/// The checks of a block on a slope; their names end with `setting`.
+pub(crate) fn slope_checks(integrator: Integrator, dt: f64, setting: &str) -> Outcome {
     let friction: f64 = 0.5;
     let friction_angle = libm::atan(friction);
     let material = Material { collision_stiffness: 1e5, ..material(friction) };
-    let mut world = world_with_slope(material, 0.9 * friction_angle, 1e-4)?;
+    let mut world = world_with_slope(integrator, material, 0.9 * friction_angle, dt)?;
     step_until(&mut world, 3.0)?;
     let position = world.body(0).position();
     step_until(&mut world, 13.0)?;
     let creep = (world.body(0).position() - position).length() / 10.0;
 
     let angle = 1.1 * friction_angle;
-    let mut world = world_with_slope(material, angle, 1e-4)?;
+    let mut world = world_with_slope(integrator, material, angle, dt)?;
     step_until(&mut world, 1.0)?;
     let before = world.body(0).velocity().x;
     step_until(&mut world, 2.0)?;
     let acceleration = world.body(0).velocity().x - before;
     let expected = G * (libm::sin(angle) - friction * libm::cos(angle));
     Ok(vec![
-        Check::error("creep velocity at 0.9 of the friction angle", creep, 1e-12, "m/s"),
+        Check::error(
+            format!("creep velocity at 0.9 of the friction angle{setting}"),
+            creep,
+            1e-12,
+            "m/s",
+        ),
         Check::new(
-            "acceleration at 1.1 of the friction angle",
+            format!("acceleration at 1.1 of the friction angle{setting}"),
             expected,
             acceleration,
             1e-4 * expected,

@@ -10,6 +10,7 @@ mod collision;
 mod contact;
 mod flight;
 mod friction;
+mod implicit;
 mod invariance;
 mod kinematic;
 mod ledger;
@@ -53,6 +54,10 @@ pub const CASES: &[Case] = &[
     order::PLANE,
     order::SPHERES,
     order::TOUCH,
+    implicit::RESTITUTION,
+    implicit::CONVERGENCE,
+    implicit::SLOPE,
+    implicit::CRADLE,
     remeshing::REMESHING,
     invariance::SCALE,
     invariance::WALLS,

@@ -1,6 +1,7 @@
 //! The bodies, as the solver sees them.
 
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::{DMat3, DVec3};
@@ -9,10 +10,10 @@ use crate::contact::pose::BodyPose;
 use crate::lanes::{Columns, LANES, Vec3x8, set, vector};
 use crate::{BodyModel, Model, Motion};
 
-/// A body during the iterations.
+/// A body before the kick.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SolverBody {
-    /// Velocity v (m/s) and angular velocity ω (rad/s), which the impulses change.
+    /// Velocity v (m/s) and angular velocity ω (rad/s).
     pub velocity: DVec3,
     pub angular_velocity: DVec3,
     /// 1/M (1/kg); 0 for a wall or a prescribed motion.
@@ -45,6 +46,35 @@ impl SolverBody {
             ),
             acceleration: model.gravity,
             ..at_rest
+        }
+    }
+}
+
+/// v and ω of a body during the iterations, as the bits of six numbers.
+///
+/// Threads solve groups that share no free body, which the borrow checker cannot see. Of a body that is not free all threads store the same
+/// velocities. On the processors in use, relaxed loads and stores are ordinary ones.
+#[derive(Debug, Default)]
+pub(super) struct Velocities([AtomicU64; 6]);
+
+impl Velocities {
+    pub fn new(body: &SolverBody) -> Self {
+        let velocities = Self::default();
+        velocities.store(body.velocity, body.angular_velocity);
+        velocities
+    }
+
+    #[inline(always)]
+    fn load(&self) -> (DVec3, DVec3) {
+        let load = |index: usize| f64::from_bits(self.0[index].load(Ordering::Relaxed));
+        (DVec3::new(load(0), load(1), load(2)), DVec3::new(load(3), load(4), load(5)))
+    }
+
+    #[inline(always)]
+    fn store(&self, velocity: DVec3, angular_velocity: DVec3) {
+        let values = [velocity, angular_velocity].map(|v| v.to_array());
+        for (cell, value) in self.0.iter().zip(values.as_flattened()) {
+            cell.store(value.to_bits(), Ordering::Relaxed);
         }
     }
 }
@@ -113,12 +143,12 @@ impl<S: Simd> LaneInertia<S> {
 
 impl<S: Simd> LaneMotion<S> {
     #[inline(always)]
-    pub fn gather(simd: S, bodies: &[SolverBody], indices: &[u32; LANES]) -> Self {
+    pub fn gather(simd: S, bodies: &[Velocities], indices: &[u32; LANES]) -> Self {
         let (mut velocity, mut angular_velocity) = (Columns::default(), Columns::default());
         for (lane, &index) in indices.iter().enumerate() {
-            let body = &bodies[index as usize];
-            set(&mut velocity, lane, body.velocity);
-            set(&mut angular_velocity, lane, body.angular_velocity);
+            let (v, omega) = bodies[index as usize].load();
+            set(&mut velocity, lane, v);
+            set(&mut angular_velocity, lane, omega);
         }
         Self {
             velocity: Vec3x8::load(simd, &velocity),
@@ -128,12 +158,11 @@ impl<S: Simd> LaneMotion<S> {
 
     /// Stores the velocities. Bodies that are not free may be in several lanes, all with the same velocities.
     #[inline(always)]
-    pub fn scatter(&self, bodies: &mut [SolverBody], indices: &[u32; LANES]) {
+    pub fn scatter(&self, bodies: &[Velocities], indices: &[u32; LANES]) {
         let (velocity, angular_velocity) = (self.velocity.store(), self.angular_velocity.store());
         for (lane, &index) in indices.iter().enumerate() {
-            let body = &mut bodies[index as usize];
-            body.velocity = vector(&velocity, lane);
-            body.angular_velocity = vector(&angular_velocity, lane);
+            let (v, omega) = (vector(&velocity, lane), vector(&angular_velocity, lane));
+            bodies[index as usize].store(v, omega);
         }
     }
 

@@ -13,6 +13,8 @@ pub(super) struct Colouring {
     used: Vec<u64>,
     /// Colour of each group.
     colours: Vec<u32>,
+    /// Colour and number of contacts of each group, and its index: buffer of the sort.
+    keys: Vec<(u64, u32)>,
     /// The groups, colour by colour, those with more contacts first.
     pub order: Vec<u32>,
     /// Where the colours begin in `order`, and the end.
@@ -49,21 +51,22 @@ impl Colouring {
         self.sort(groups, if extra > COLOURS { extra } else { count });
     }
 
-    /// Sorts the groups by colour, by their number of contacts, and by their index: a stable sort would allocate.
+    /// Sorts the groups by colour, by their number of contacts, and by their index.
     fn sort(&mut self, groups: &[Group], count: u32) {
-        self.order.clear();
-        self.order.extend(0..groups.len() as u32);
-        let colours = &self.colours;
-        let key = |&group: &u32| {
-            let group = group as usize;
-            (colours[group], u32::MAX - groups[group].len(), group)
-        };
-        self.order.sort_unstable_by_key(key);
-        let order = &self.order;
-        self.starts.clear();
-        self.starts.extend(
+        let Self { colours, keys, order, starts, .. } = self;
+        let group_keys = groups.iter().zip(&*colours).zip(0..).map(|((group, &colour), index)| {
+            (u64::from(colour) << 32 | u64::from(u32::MAX - group.len()), index)
+        });
+        keys.clear();
+        keys.extend(group_keys);
+        // a stable sort would allocate
+        keys.sort_unstable();
+        order.clear();
+        order.extend(keys.iter().map(|&(_, group)| group));
+        starts.clear();
+        starts.extend(
             (0..=count).map(|colour| {
-                order.partition_point(|&group| colours[group as usize] < colour) as u32
+                keys.partition_point(|&(key, _)| key >> 32 < u64::from(colour)) as u32
             }),
         );
     }

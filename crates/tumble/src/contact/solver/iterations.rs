@@ -1,13 +1,20 @@
 //! The iterations: projected Gauss–Seidel, colour by colour, forwards and backwards in turn.
 
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
-use super::bodies::{LaneInertia, LaneMotion, SolverBody};
+use super::bodies::{LaneInertia, LaneMotion, Velocities};
 use super::law::relative_velocity;
 use super::normal_impulse::normal_impulse;
-use super::rows::{Pack, Row, Rows};
+use super::rows::{Block, Pack, Row, Rows};
 use crate::SolverSettings;
-use crate::lanes::{Vec3x8, positive, sum};
+use crate::lanes::{Vec3x8, sum};
+use crate::parallel::Rounds;
+
+/// Fewer blocks for each thread take less time than waiting for each other.
+const BLOCKS_PER_THREAD: usize = 8;
 
 /// How the iterations ended.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +25,7 @@ pub(crate) struct Outcome {
 
 /// Squares of the changes of the impulses in an iteration, and of the impulses (N²·s²).
 #[derive(Clone, Copy, Debug, Default)]
-struct Change {
+pub(super) struct Change {
     change: f64,
     total: f64,
 }
@@ -29,42 +36,60 @@ impl Change {
     }
 }
 
-/// Applies the impulses that the rows begin with.
-pub(super) fn apply(rows: &Rows, bodies: &mut [SolverBody]) {
-    dispatch!(Level::new(), simd => simd.vectorize(
-        #[inline(always)]
-        || apply_packs(simd, rows, bodies)
-    ));
+/// Applies the impulses that the rows begin with, and iterates until they change by less than the tolerance.
+pub(super) fn iterate(rows: &Rows, bodies: &[Velocities], settings: SolverSettings) -> Outcome {
+    let blocks = rows.shared();
+    let has_converged = || {
+        let mut all = Change::default();
+        for block in blocks {
+            let Change { change, total } = lock(block).change;
+            all.change += change;
+            all.total += total;
+        }
+        all.is_below(settings.tolerance)
+    };
+    // round 0 applies, and the others iterate
+    let iterations = AtomicU32::new(0);
+    let work = |round, block: usize| {
+        let block = &mut *lock(&blocks[block]);
+        dispatch!(Level::new(), simd => simd.vectorize(
+            #[inline(always)]
+            || if round == 0 { apply(simd, block, bodies) } else { visit(simd, block, bodies, round % 2 == 1) }
+        ));
+    };
+    let after = |round: usize| {
+        iterations.store(round as u32, Ordering::Relaxed);
+        round > 0 && (round >= settings.max_iterations as usize || has_converged())
+    };
+    Rounds::new(&rows.starts, work, after).run(blocks.len() / BLOCKS_PER_THREAD);
+    Outcome { iterations: iterations.into_inner(), has_converged: has_converged() }
+}
+
+/// A block is free when its phase begins, or another thread has panicked and its results will not be used.
+fn lock(block: &Mutex<Block>) -> MutexGuard<'_, Block> {
+    block.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[inline(always)]
-fn apply_packs<S: Simd>(simd: S, rows: &Rows, bodies: &mut [SolverBody]) {
-    for pack in &rows.packs {
-        apply_pack(simd, pack, &rows.rows[pack.start as usize..pack.end as usize], bodies);
+fn apply<S: Simd>(simd: S, block: &Block, bodies: &[Velocities]) {
+    for pack in &block.packs {
+        apply_pack(simd, pack, &block.rows[pack.start as usize..pack.end as usize], bodies);
     }
 }
 
-/// Iterates until the impulses change by less than the tolerance.
-pub(super) fn iterate(
-    rows: &mut Rows,
-    bodies: &mut [SolverBody],
-    settings: SolverSettings,
-) -> Outcome {
-    for iteration in 0..settings.max_iterations {
-        let change = sweep(rows, bodies, iteration % 2 == 1);
-        if change.is_below(settings.tolerance) {
-            return Outcome { iterations: iteration + 1, has_converged: true };
-        }
+/// Visits each contact.
+#[inline(always)]
+fn visit<S: Simd>(simd: S, block: &mut Block, bodies: &[Velocities], is_backward: bool) {
+    let mut all = Change::default();
+    let Block { packs, rows, .. } = block;
+    for number in 0..packs.len() {
+        let pack = &packs[place(number, packs.len(), is_backward)];
+        let rows = &mut rows[pack.start as usize..pack.end as usize];
+        let Change { change, total } = visit_pack(simd, pack, rows, bodies, is_backward);
+        all.change += change;
+        all.total += total;
     }
-    Outcome { iterations: settings.max_iterations, has_converged: false }
-}
-
-/// Visits each contact once.
-fn sweep(rows: &mut Rows, bodies: &mut [SolverBody], is_backward: bool) -> Change {
-    dispatch!(Level::new(), simd => simd.vectorize(
-        #[inline(always)]
-        || visit_packs(simd, rows, bodies, is_backward)
-    ))
+    block.change = all;
 }
 
 /// The place of the `number`-th of `count` in either direction.
@@ -74,26 +99,7 @@ fn place(number: usize, count: usize, is_backward: bool) -> usize {
 }
 
 #[inline(always)]
-fn visit_packs<S: Simd>(
-    simd: S,
-    rows: &mut Rows,
-    bodies: &mut [SolverBody],
-    is_backward: bool,
-) -> Change {
-    let mut all = Change::default();
-    let Rows { packs, rows, .. } = rows;
-    for number in 0..packs.len() {
-        let pack = &packs[place(number, packs.len(), is_backward)];
-        let rows = &mut rows[pack.start as usize..pack.end as usize];
-        let Change { change, total } = visit_pack(simd, pack, rows, bodies, is_backward);
-        all.change += change;
-        all.total += total;
-    }
-    all
-}
-
-#[inline(always)]
-fn apply_pack<S: Simd>(simd: S, pack: &Pack, rows: &[Row], bodies: &mut [SolverBody]) {
+fn apply_pack<S: Simd>(simd: S, pack: &Pack, rows: &[Row], bodies: &[Velocities]) {
     let mut pair = PackBodies::gather(simd, pack, bodies);
     for row in rows {
         let normal = f64x8::simd_from(simd, row.impulse);
@@ -107,7 +113,7 @@ fn visit_pack<S: Simd>(
     simd: S,
     pack: &Pack,
     rows: &mut [Row],
-    bodies: &mut [SolverBody],
+    bodies: &[Velocities],
     is_backward: bool,
 ) -> Change {
     let mut pair = PackBodies::gather(simd, pack, bodies);
@@ -136,7 +142,7 @@ struct PackBodies<S: Simd> {
 
 impl<S: Simd> PackBodies<S> {
     #[inline(always)]
-    fn gather(simd: S, pack: &Pack, bodies: &[SolverBody]) -> Self {
+    fn gather(simd: S, pack: &Pack, bodies: &[Velocities]) -> Self {
         Self {
             inertia: [
                 LaneInertia::load(simd, &pack.inertia[0]),
@@ -150,7 +156,7 @@ impl<S: Simd> PackBodies<S> {
     }
 
     #[inline(always)]
-    fn scatter(&self, pack: &Pack, bodies: &mut [SolverBody]) {
+    fn scatter(&self, pack: &Pack, bodies: &[Velocities]) {
         self.motion[0].scatter(bodies, &pack.first);
         self.motion[1].scatter(bodies, &pack.second);
     }
@@ -177,7 +183,7 @@ impl<S: Simd> PackBodies<S> {
         let mobility = load(row.normal_mobility);
         let by_law = normal_impulse(simd, row, u - mobility * old);
         let by_rebound = old + (load(row.rebound) - u) / mobility;
-        let normal = positive(simd, by_law.simd_gt(by_rebound).select(by_law, by_rebound));
+        let normal = by_law.simd_gt(by_rebound).select(by_law, by_rebound);
         row.impulse = normal.into();
 
         let old_tangential = Vec3x8::load(simd, &row.tangential_impulse);

@@ -19,7 +19,7 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
 
 use super::super::patch_damping::{DampingTimes, Patch};
-use super::bodies::{LaneInertia, LaneMotion, SolverBody};
+use super::bodies::{LaneInertia, LaneMotion, SolverBody, Velocities};
 use super::rows::{Pack, Row, RowLaw};
 use crate::lanes::{Columns, LANES, Vec3x8, positive, set};
 use crate::{ContactLaw, restitution};
@@ -52,14 +52,14 @@ pub(super) fn prepare<S: Simd>(
     simd: S,
     pack: &Pack,
     (rows, laws): (&mut [Row], &mut [RowLaw]),
-    bodies: &[SolverBody],
+    (bodies, velocities): (&[SolverBody], &[Velocities]),
     step: Step,
 ) {
     let inertia =
         [LaneInertia::load(simd, &pack.inertia[0]), LaneInertia::load(simd, &pack.inertia[1])];
     let motion = [
-        LaneMotion::gather(simd, bodies, &pack.first),
-        LaneMotion::gather(simd, bodies, &pack.second),
+        LaneMotion::gather(simd, velocities, &pack.first),
+        LaneMotion::gather(simd, velocities, &pack.second),
     ];
     for (row, law) in rows.iter_mut().zip(&mut *laws) {
         velocities_before(simd, row, law, &motion);
@@ -127,7 +127,12 @@ pub(super) fn relative_velocity<S: Simd>(
 }
 
 #[inline(always)]
-fn velocities_before<S: Simd>(simd: S, row: &mut Row, law: &mut RowLaw, motion: &[LaneMotion<S>; 2]) {
+fn velocities_before<S: Simd>(
+    simd: S,
+    row: &mut Row,
+    law: &mut RowLaw,
+    motion: &[LaneMotion<S>; 2],
+) {
     let (normal, tangential) = relative_velocity(simd, row, motion);
     row.approach = normal.into();
     law.sliding = (tangential + Vec3x8::load(simd, &law.surface_velocity)).store();

@@ -8,31 +8,27 @@
 use fearless_simd::{Simd, f64x8, prelude::*};
 use glam::DVec3;
 
-use super::bodies::{LaneInertia, LaneMotion, SolverBody};
+use super::bodies::{LaneInertia, LaneMotion, SolverBody, Velocities};
 use super::law::{Step, Weights, relative_acceleration, relative_velocity};
 use super::rows::{Pack, Row, RowLaw};
 use crate::RunTotals;
 use crate::lanes::{Columns, LANES, Vec3x8, largest, positive, sum};
 
-/// Impulses and losses of a pack.
-pub(super) struct Account {
-    /// Impulses on the first bodies, their torques about the centres of mass of these, and of the second bodies.
-    pub impulses: [Columns; 3],
-    pub losses: RunTotals,
-}
+/// Impulses on the first bodies of a pack, their torques about the centres of mass of these, and of the second bodies.
+pub(super) type PackImpulses = [Columns; 3];
 
-/// Accounts for the impulses of a pack, and sets the stretches after the kick.
+/// Sums the impulses and losses of a pack, and sets the stretches after the kick.
 #[inline(always)]
 pub(super) fn account<S: Simd>(
     simd: S,
     pack: &Pack,
     (rows, laws): (&[Row], &mut [RowLaw]),
-    bodies: &[SolverBody],
+    (bodies, velocities): (&[SolverBody], &[Velocities]),
     step: Step,
-) -> Account {
+) -> (PackImpulses, RunTotals) {
     let motion = [
-        LaneMotion::gather(simd, bodies, &pack.first),
-        LaneMotion::gather(simd, bodies, &pack.second),
+        LaneMotion::gather(simd, velocities, &pack.first),
+        LaneMotion::gather(simd, velocities, &pack.second),
     ];
     let zero = f64x8::splat(simd, 0.0);
     let zeros = Vec3x8::splat(simd, DVec3::ZERO);
@@ -63,7 +59,7 @@ pub(super) fn account<S: Simd>(
         ..RunTotals::default()
     };
     let [torque, other_torque] = torques;
-    Account { impulses: [impulse.store(), torque.store(), other_torque.store()], losses }
+    ([impulse.store(), torque.store(), other_torque.store()], losses)
 }
 
 /// Sums over the rows of each lane (J, and m for the depth).

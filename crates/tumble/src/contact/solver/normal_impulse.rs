@@ -33,7 +33,8 @@ pub(super) fn normal_impulse<S: Simd>(simd: S, row: &Row, free: f64x8<S>) -> f64
     if !(opens | meets).any_true() {
         return positive(simd, impulse);
     }
-    let partial = Partial { start, without, per_impulse, stiffness: load(row.half_stiffness), row, free };
+    let partial =
+        Partial { start, without, per_impulse, stiffness: load(row.half_stiffness), row, free };
     let impulse = meets.select(partial.closing(simd), impulse);
     positive(simd, opens.select(partial.opening(simd), impulse))
 }

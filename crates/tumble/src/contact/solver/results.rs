@@ -6,20 +6,21 @@ use super::super::chunk_contacts::ChunkContacts;
 use super::super::neighbour_list::NeighbourLists;
 use super::super::pose::BodyPose;
 use super::super::since_kick::SinceKick;
-use super::bodies::SolverBody;
+use super::bodies::{SolverBody, Velocities};
 use super::colouring::Colouring;
 use super::groups::{self, ContactPlace, Group};
-use super::iterations::{Outcome, apply, iterate};
+use super::iterations::{Outcome, iterate};
 use super::law::{Step, prepare};
-use super::losses::{Account, account};
-use super::rows::{Rows, Source};
+use super::losses::account;
+use super::rows::{Block, Rows, Source};
 use crate::lanes::vector;
 use crate::{BodyForces, ContactImpulse, Model, PairSpring, RunTotals, State, Wrench};
 
 /// Buffers of the solver. Dropping them between steps changes no result.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct Solver {
     bodies: Vec<SolverBody>,
+    velocities: Vec<Velocities>,
     places: Vec<ContactPlace>,
     groups: Vec<Group>,
     colouring: Colouring,
@@ -28,6 +29,13 @@ pub(crate) struct Solver {
     impulses: Vec<Wrench>,
     springs: Vec<PairSpring>,
     contact_impulses: Vec<ContactImpulse>,
+}
+
+/// Buffers hold nothing between steps, so that a copy needs none of it.
+impl Clone for Solver {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 /// The contacts within reach.
@@ -53,22 +61,15 @@ impl Solver {
         let bodies = model.bodies.iter().zip(found.poses);
         self.bodies.extend(bodies.map(|(body, pose)| SolverBody::new(model, body, pose, time)));
         self.bodies.push(SolverBody::default());
+        self.velocities.clear();
+        self.velocities.extend(self.bodies.iter().map(Velocities::new));
         let count = model.bodies.len() as u32;
         groups::collect(found.chunks, found.lists, count, &mut self.places, &mut self.groups);
         self.colouring.colour(&self.groups, &self.bodies);
-        let source = Source {
-            chunks: found.chunks,
-            poses: found.poses,
-            bodies: &self.bodies,
-            contacts: &self.places,
-            groups: &self.groups,
-            impulses: &state.pair_impulses,
-        };
-        self.rows.fill(&source, &self.colouring);
+        self.rows.assign(&self.groups, &self.colouring);
         let step = Step { length: h, rest_speed: 2.0 * h * model.gravity.length() };
-        self.prepare(step);
-        apply(&self.rows, &mut self.bodies);
-        let outcome = iterate(&mut self.rows, &mut self.bodies, model.solver);
+        self.prepare(found, &state.pair_impulses, step);
+        let outcome = iterate(&self.rows, &self.velocities, model.solver);
         let mut totals = RunTotals {
             iterations: u64::from(outcome.iterations),
             not_converged: u64::from(!outcome.has_converged),
@@ -81,33 +82,42 @@ impl Solver {
         outcome
     }
 
-    fn prepare(&mut self, step: Step) {
-        let Self { rows, bodies, .. } = self;
-        dispatch!(Level::new(), simd => simd.vectorize(
-            #[inline(always)]
-            || prepare_all(simd, rows, bodies, step)
-        ));
+    /// Fills the rows, and computes their coefficients.
+    fn prepare(&mut self, found: &Found, impulses: &[ContactImpulse], step: Step) {
+        let Self { bodies, velocities, places, groups, colouring, rows, .. } = self;
+        let Found { chunks, poses, .. } = *found;
+        let source = Source { chunks, poses, bodies, contacts: places, groups, impulses };
+        rows.for_each(|block| {
+            block.fill(&source, colouring);
+            dispatch!(Level::new(), simd => simd.vectorize(
+                #[inline(always)]
+                || prepare_block(simd, block, (bodies, velocities), step)
+            ));
+        });
     }
 
     /// The energy that the contacts take, and the impulses on the bodies.
     fn account(&mut self, step: Step, totals: &mut RunTotals) {
+        let Self { bodies, velocities, rows, .. } = self;
+        rows.for_each(|block| {
+            dispatch!(Level::new(), simd => simd.vectorize(
+                #[inline(always)]
+                || account_block(simd, block, (bodies, velocities), step)
+            ));
+        });
         self.impulses.clear();
         self.impulses.resize(self.bodies.len(), Wrench::default());
-        let Rows { packs, rows, laws, .. } = &mut self.rows;
-        for pack in packs {
-            let range = pack.start as usize..pack.end as usize;
-            let rows = (&rows[range.clone()], &mut laws[range]);
-            let Account { impulses, losses } = dispatch!(Level::new(), simd => simd.vectorize(
-                #[inline(always)]
-                || account(simd, pack, rows, &self.bodies, step)
-            ));
-            *totals += losses;
-            for (lane, _) in pack.lengths.iter().enumerate().filter(|(_, length)| **length > 0) {
-                let [force, torque, other_torque] =
-                    impulses.each_ref().map(|columns| vector(columns, lane));
-                self.impulses[pack.first[lane] as usize] += Wrench { force, torque };
-                self.impulses[pack.second[lane] as usize] +=
-                    Wrench { force: -force, torque: -other_torque };
+        for block in self.rows.iter_mut() {
+            *totals += block.losses;
+            for (pack, impulses) in block.packs.iter().zip(&block.impulses) {
+                let used = pack.lengths.iter().enumerate().filter(|(_, length)| **length > 0);
+                for (lane, _) in used {
+                    let [force, torque, other_torque] =
+                        impulses.each_ref().map(|columns| vector(columns, lane));
+                    self.impulses[pack.first[lane] as usize] += Wrench { force, torque };
+                    self.impulses[pack.second[lane] as usize] +=
+                        Wrench { force: -force, torque: -other_torque };
+                }
             }
         }
     }
@@ -141,10 +151,9 @@ impl Solver {
     fn store(&mut self, found: &Found, state: &mut State, totals: &mut RunTotals) {
         self.springs.clear();
         self.contact_impulses.clear();
-        for (place, &(row, lane)) in self.places.iter().zip(&self.rows.places) {
-            let (row, lane) = (row as usize, lane as usize);
-            let normal = self.rows.rows[row].impulse[lane];
-            if self.rows.laws[row].keeps_spring[lane] == 0.0 {
+        for (contact, place) in self.places.iter().enumerate() {
+            let Some((row, law, lane)) = self.rows.of_contact(contact) else { continue };
+            if law.keeps_spring[lane] == 0.0 {
                 continue;
             }
             let contacts = &found.chunks[place.chunk as usize];
@@ -152,10 +161,11 @@ impl Solver {
             let old = place.lane as usize;
             let pair = contacts.pairs[lanes.pair[old] as usize].list_index as usize;
             let key = lanes.spring_key(old, &found.lists.chunks[place.chunk as usize].pairs[pair]);
-            let stretch = vector(&self.rows.laws[row].stretch, lane);
-            self.springs.push(PairSpring { stretch, ..key });
-            let tangential = vector(&self.rows.rows[row].tangential_impulse, lane);
-            self.contact_impulses.push(ContactImpulse { normal, tangential });
+            self.springs.push(PairSpring { stretch: vector(&law.stretch, lane), ..key });
+            self.contact_impulses.push(ContactImpulse {
+                normal: row.impulse[lane],
+                tangential: vector(&row.tangential_impulse, lane),
+            });
         }
         totals.slip += found.chunks.iter().flat_map(|chunk| &chunk.released).sum::<f64>();
         std::mem::swap(&mut state.pair_springs, &mut self.springs);
@@ -164,10 +174,34 @@ impl Solver {
 }
 
 #[inline(always)]
-fn prepare_all<S: Simd>(simd: S, rows: &mut Rows, bodies: &[SolverBody], step: Step) {
-    let Rows { packs, rows, laws, .. } = rows;
+fn prepare_block<S: Simd>(
+    simd: S,
+    block: &mut Block,
+    bodies: (&[SolverBody], &[Velocities]),
+    step: Step,
+) {
+    let Block { packs, rows, laws, .. } = block;
     for pack in packs {
         let range = pack.start as usize..pack.end as usize;
         prepare(simd, pack, (&mut rows[range.clone()], &mut laws[range]), bodies, step);
+    }
+}
+
+#[inline(always)]
+fn account_block<S: Simd>(
+    simd: S,
+    block: &mut Block,
+    bodies: (&[SolverBody], &[Velocities]),
+    step: Step,
+) {
+    let Block { packs, rows, laws, impulses, losses, .. } = block;
+    impulses.clear();
+    *losses = RunTotals::default();
+    for pack in packs {
+        let range = pack.start as usize..pack.end as usize;
+        let rows = (&rows[range.clone()], &mut laws[range]);
+        let (of_pack, of_rows) = account(simd, pack, rows, bodies, step);
+        impulses.push(of_pack);
+        *losses += of_rows;
     }
 }

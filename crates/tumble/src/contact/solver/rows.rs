@@ -1,13 +1,23 @@
 //! Rows: contacts of eight groups side by side.
 
+use std::ops::Range;
+use std::sync::Mutex;
+
+use glam::DVec3;
+
 use super::super::chunk_contacts::ChunkContacts;
 use super::super::contact_lanes::NO_SPRING;
 use super::super::pose::BodyPose;
 use super::bodies::{InertiaColumns, SolverBody, inertia_columns};
 use super::colouring::Colouring;
 use super::groups::{ContactPlace, Group};
-use crate::ContactImpulse;
+use super::iterations::Change;
+use super::losses::PackImpulses;
 use crate::lanes::{Columns, LANES, set, vector};
+use crate::{ContactImpulse, RunTotals, parallel};
+
+/// Enough work for a thread to take at a time, and few enough that the colours of a heap of a thousand bodies have several blocks.
+const PACKS_PER_BLOCK: usize = 8;
 
 /// Eight groups that share no free body, one per lane.
 #[derive(Clone, Debug)]
@@ -87,14 +97,39 @@ pub(super) struct RowLaw {
     pub implicitness: [f64; LANES],
 }
 
-/// The rows of all packs.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Rows {
+/// Packs of one colour, with their rows: what a thread solves at a time.
+#[derive(Debug, Default)]
+pub(super) struct Block {
     pub packs: Vec<Pack>,
     pub rows: Vec<Row>,
     pub laws: Vec<RowLaw>,
-    /// For each contact, its row and lane.
-    pub places: Vec<(u32, u32)>,
+    /// The groups in the lanes of the packs.
+    groups: Range<u32>,
+    /// Of the latest iteration.
+    pub change: Change,
+    /// Of each pack, and of all of them.
+    pub impulses: Vec<PackImpulses>,
+    pub losses: RunTotals,
+}
+
+/// Where the row of a contact is.
+#[derive(Clone, Copy, Debug, Default)]
+struct RowPlace {
+    block: u32,
+    row: u32,
+    lane: u32,
+}
+
+/// The rows of all packs.
+#[derive(Debug, Default)]
+pub(super) struct Rows {
+    /// Those from `used` on are spare.
+    blocks: Vec<Mutex<Block>>,
+    used: usize,
+    /// Where the blocks of each colour begin, and the end.
+    pub starts: Vec<u32>,
+    /// For each contact.
+    places: Vec<RowPlace>,
 }
 
 /// What the rows are made from.
@@ -110,60 +145,133 @@ pub(super) struct Source<'a> {
 }
 
 impl Rows {
-    /// Puts all groups into packs, and their contacts into rows.
-    pub fn fill(&mut self, source: &Source, colouring: &Colouring) {
-        self.packs.clear();
+    /// Assigns all groups to blocks, and their contacts to rows.
+    pub fn assign(&mut self, groups: &[Group], colouring: &Colouring) {
+        self.used = 0;
+        self.starts.clear();
+        self.starts.push(0);
+        let count = groups.last().map_or(0, |group| group.end as usize);
         self.places.clear();
-        self.places.resize(source.contacts.len(), (0, 0));
-        let mut row_count = 0;
+        self.places.resize(count, RowPlace::default());
         for range in colouring.starts.windows(2) {
-            let groups = &colouring.order[range[0] as usize..range[1] as usize];
-            for groups in groups.chunks(LANES) {
-                let pack = self.pack(source, groups, row_count);
-                row_count = pack.end;
-                self.packs.push(pack);
+            let of_block = (LANES * PACKS_PER_BLOCK) as u32;
+            for start in (range[0]..range[1]).step_by(of_block as usize) {
+                self.assign_block(groups, colouring, start..range[1].min(start + of_block));
             }
-        }
-        self.rows.clear();
-        self.rows.resize(row_count as usize, Row::default());
-        self.laws.clear();
-        self.laws.resize(row_count as usize, RowLaw::default());
-        let Self { rows, laws, places, .. } = self;
-        for (place, &(row, lane)) in source.contacts.iter().zip(&*places) {
-            source.fill(place, &mut rows[row as usize], &mut laws[row as usize], lane as usize);
+            self.starts.push(self.used as u32);
         }
     }
 
-    fn pack(&mut self, source: &Source, groups: &[u32], start: u32) -> Pack {
-        let wall = source.poses.len() as u32;
-        let zero = [0.0; LANES];
-        let mut pack = Pack {
-            first: [wall; LANES],
-            second: [wall; LANES],
-            inertia: [InertiaColumns::default(); 2],
-            start,
-            end: start,
-            damping_ratio: zero,
-            asked_damping_ratio: zero,
-            friction_damping_factor: zero,
-            lengths: [0; LANES],
-        };
-        for (lane, &group) in groups.iter().enumerate() {
-            let group = &source.groups[group as usize];
-            (pack.first[lane], pack.second[lane]) = (group.first, group.second);
-            pack.damping_ratio[lane] = group.damping_ratio;
-            pack.asked_damping_ratio[lane] = group.asked_damping_ratio;
-            pack.friction_damping_factor[lane] = group.friction_damping_factor;
-            pack.lengths[lane] = group.len();
-            pack.end = pack.end.max(start + group.len());
-            for (row, contact) in (start..).zip(group.start..group.end) {
-                self.places[contact as usize] = (row, lane as u32);
+    fn assign_block(&mut self, groups: &[Group], colouring: &Colouring, range: Range<u32>) {
+        let block = self.used as u32;
+        let order = &colouring.order[range.start as usize..range.end as usize];
+        let mut start = 0;
+        for lanes in order.chunks(LANES) {
+            let groups = lanes.iter().map(|&index| &groups[index as usize]);
+            let mut end = start;
+            for (lane, group) in (0..).zip(groups) {
+                for (row, contact) in (start..).zip(group.start..group.end) {
+                    self.places[contact as usize] = RowPlace { block, row, lane };
+                }
+                end = end.max(start + group.len());
             }
+            start = end;
         }
-        pack.inertia =
-            [&pack.first, &pack.second].map(|indices| inertia_columns(source.bodies, indices));
-        pack
+        if self.used == self.blocks.len() {
+            self.blocks.push(Mutex::default());
+        }
+        if let Ok(block) = self.blocks[self.used].get_mut() {
+            block.groups = range;
+        }
+        self.used += 1;
     }
+
+    /// The blocks, each of which a thread may lock.
+    pub fn shared(&self) -> &[Mutex<Block>] {
+        &self.blocks[..self.used]
+    }
+
+    /// Calls `work` for each block, in parallel.
+    pub fn for_each(&mut self, work: impl Fn(&mut Block) + Sync) {
+        parallel::for_each(&mut self.blocks[..self.used], |_, block| {
+            if let Ok(block) = block.get_mut() {
+                work(block);
+            }
+        });
+    }
+
+    /// The row of a contact and its lane.
+    pub fn of_contact(&mut self, contact: usize) -> Option<(&Row, &RowLaw, usize)> {
+        let RowPlace { block, row, lane } = self.places[contact];
+        let Block { rows, laws, .. } = self.blocks[block as usize].get_mut().ok()?;
+        Some((&rows[row as usize], &laws[row as usize], lane as usize))
+    }
+
+    /// The blocks in order.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Block> {
+        self.blocks[..self.used].iter_mut().filter_map(|block| block.get_mut().ok())
+    }
+}
+
+impl Block {
+    /// Puts its groups into packs, and their contacts into rows.
+    pub fn fill(&mut self, source: &Source, colouring: &Colouring) {
+        self.packs.clear();
+        let range = self.groups.start as usize..self.groups.end as usize;
+        let mut end = 0;
+        for groups in colouring.order[range].chunks(LANES) {
+            let pack = pack(source, groups, end);
+            end = pack.end;
+            // rows of earlier steps are overwritten
+            if self.rows.len() < end as usize {
+                self.rows.resize(end as usize, Row::default());
+                self.laws.resize(end as usize, RowLaw::default());
+            }
+            for lane in 0..LANES {
+                let contacts = groups.get(lane).map_or(0..0, |&group| {
+                    let Group { start, end, .. } = source.groups[group as usize];
+                    start as usize..end as usize
+                });
+                let mut contacts = source.contacts[contacts].iter();
+                let range = pack.start as usize..end as usize;
+                for (row, law) in self.rows[range.clone()].iter_mut().zip(&mut self.laws[range]) {
+                    match contacts.next() {
+                        Some(place) => source.fill(place, row, law, lane),
+                        None => clear(row, law, lane),
+                    }
+                }
+            }
+            self.packs.push(pack);
+        }
+    }
+}
+
+fn pack(source: &Source, groups: &[u32], start: u32) -> Pack {
+    let wall = source.poses.len() as u32;
+    let zero = [0.0; LANES];
+    let mut pack = Pack {
+        first: [wall; LANES],
+        second: [wall; LANES],
+        inertia: [InertiaColumns::default(); 2],
+        start,
+        end: start,
+        damping_ratio: zero,
+        asked_damping_ratio: zero,
+        friction_damping_factor: zero,
+        lengths: [0; LANES],
+    };
+    for (lane, &group) in groups.iter().enumerate() {
+        let group = &source.groups[group as usize];
+        (pack.first[lane], pack.second[lane]) = (group.first, group.second);
+        pack.damping_ratio[lane] = group.damping_ratio;
+        pack.asked_damping_ratio[lane] = group.asked_damping_ratio;
+        pack.friction_damping_factor[lane] = group.friction_damping_factor;
+        pack.lengths[lane] = group.len();
+        pack.end = pack.end.max(start + group.len());
+    }
+    pack.inertia =
+        [&pack.first, &pack.second].map(|indices| inertia_columns(source.bodies, indices));
+    pack
 }
 
 impl Source<'_> {
@@ -184,29 +292,43 @@ impl Source<'_> {
         law.gap[lane] = from.gap[old];
         law.stiffness[lane] = from.stiffness[old];
         law.damping[lane] = from.damping[old];
-        if from.friction[old] > 0.0 {
-            law.friction_spring[lane] = from.friction_spring[old];
-            law.friction_damping[lane] = from.friction_damping[old];
-            set(&mut law.stretch, lane, vector(&from.stretch, old));
-        }
-        if from.has_surface_velocity {
+        let is_rough = from.friction[old] > 0.0;
+        let if_rough = |value: f64| if is_rough { value } else { 0.0 };
+        law.friction_spring[lane] = if_rough(from.friction_spring[old]);
+        law.friction_damping[lane] = if_rough(from.friction_damping[old]);
+        let stretch = if is_rough { vector(&from.stretch, old) } else { DVec3::ZERO };
+        set(&mut law.stretch, lane, stretch);
+        let surface = if from.has_surface_velocity {
             let of_body = |index: u32| {
-                self.poses
-                    .get(index as usize)
-                    .map_or(glam::DVec3::ZERO, |pose| pose.surface_velocity)
+                self.poses.get(index as usize).map_or(DVec3::ZERO, |pose| pose.surface_velocity)
             };
-            let surface = of_body(from.first[old]) - of_body(from.second[old]);
-            set(&mut law.surface_velocity, lane, surface - normal * surface.dot(normal));
-        }
-        if from.spring[old] != NO_SPRING {
-            law.had_spring[lane] = 1.0;
-        }
-        if from.spring[old] != NO_SPRING
-            && let Some(impulse) = self.impulses.get(from.spring[old] as usize)
-        {
-            row.impulse[lane] = impulse.normal;
-            let along = impulse.tangential - normal * impulse.tangential.dot(normal);
-            set(&mut row.tangential_impulse, lane, along);
-        }
+            of_body(from.first[old]) - of_body(from.second[old])
+        } else {
+            DVec3::ZERO
+        };
+        set(&mut law.surface_velocity, lane, surface - normal * surface.dot(normal));
+        let spring = from.spring[old];
+        let had_spring = spring != NO_SPRING;
+        law.had_spring[lane] = f64::from(u8::from(had_spring));
+        let impulse = if had_spring { self.impulses.get(spring as usize) } else { None };
+        let impulse = impulse.copied().unwrap_or_default();
+        row.impulse[lane] = impulse.normal;
+        let along = impulse.tangential - normal * impulse.tangential.dot(normal);
+        set(&mut row.tangential_impulse, lane, along);
     }
+}
+
+/// Empties a lane. [`super::law::prepare`] computes the rest of the row.
+fn clear(row: &mut Row, law: &mut RowLaw, lane: usize) {
+    let Row { normal, arms: [arm, other_arm], levers: [lever, other_lever], .. } = row;
+    for columns in [normal, arm, other_arm, lever, other_lever, &mut row.tangential_impulse] {
+        set(columns, lane, DVec3::ZERO);
+    }
+    (row.friction[lane], row.impulse[lane]) = (0.0, 0.0);
+    let RowLaw { gap, stiffness, damping, friction_spring, friction_damping, had_spring, .. } = law;
+    for column in [gap, stiffness, damping, friction_spring, friction_damping, had_spring] {
+        column[lane] = 0.0;
+    }
+    set(&mut law.stretch, lane, DVec3::ZERO);
+    set(&mut law.surface_velocity, lane, DVec3::ZERO);
 }
