@@ -1,4 +1,4 @@
-"""Draws penetration against cost, one point per method and time step.
+"""Draws penetration against cost, one point per method and time step, from the first start.
 
 picture.py RESULTS FILE: FILE is an .svg or a .png.
 """
@@ -19,7 +19,7 @@ INK, GRID = "#2D343E", "#E2E6EC"
 PANELS = {
     "deepest overlap at rest (mm)": "deepest overlap at the end (m)",
     "mean overlap at rest (mm)": "mean overlap (m)",
-    "deepest overlap during the fall (mm)": "deepest overlap of all samples (m)",
+    "deepest overlap while it falls, every 0.1 s (mm)": "deepest overlap of all samples (m)",
 }
 # shades of one colour for one engine
 COLOURS = {
