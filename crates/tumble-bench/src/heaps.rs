@@ -23,13 +23,13 @@ const TILE_EDGE: usize = 10;
 /// Simulated time after which a tile is at rest (s).
 const SETTLING_TIME: f64 = 2.0;
 /// Simulated time for which tiles, side by side, come to rest again (s): the walls that they rested on have gone.
-const TILED_SETTLING_TIME: f64 = 1.2;
+const TILED_SETTLING_TIME: f64 = 0.8;
 /// Their integrator and its time step (s), the quickest of all.
 const TILED_SETTLING: Method = (Integrator::Implicit, 1.0 / 240.0);
 /// The integrators that are measured, and their time steps (s).
 const METHODS: [Method; 2] = [(Integrator::Splitting, 1e-4), (Integrator::Implicit, 1e-3)];
 /// Untimed steps of a new world, which starts without friction springs; `implicit` divides the first ones.
-const FIRST_STEPS: usize = 200;
+const FIRST_STEPS: usize = 100;
 /// Number of rounds of each measurement.
 const ROUNDS: usize = 9;
 /// Minimum number of body-steps per turn.
