@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Generates docs/benchmarks.md with the times of this machine. Takes about twenty minutes. Keep the machine otherwise idle.
+# Generates docs/benchmarks.md with the times of this machine. Takes about an hour. Keep the machine otherwise idle.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 page=$(mktemp)
@@ -9,7 +9,7 @@ cargo build --release --locked
 cat >"$page" <<'PAGE'
 # Benchmarks
 
-`docs/benchmarks.sh` generates this page. It runs `cargo bench`, `bench/bouncing/run.sh` and `bench/heap/run.sh`.
+`docs/benchmarks.sh` generates this page. It runs `cargo bench`, `bench/bouncing/run.sh`, `bench/heap/run.sh` and `bench/big_steps/run.sh`.
 All times are from one machine. The ratios are more meaningful than the times: they compare candidates that took turns in
 the same run.
 
@@ -28,9 +28,13 @@ cargo bench --locked -p tumble-bench --bench speed >>"$page"
     printf '\n## Heap of clumps, compared with LAMMPS\n\n'
     printf 'Clumps of eight spheres fall into an open box, simulated on one core. [bench/README.md](../bench/README.md) describes the set-up.\n\n'
     TUMBLE=$PWD/target/release/tumble bench/heap/run.sh
-    printf '\n## Heaps at rest, from 1000 to 100,000 clumps\n\n'
-    printf 'The heaps consist of 1, 8 and 100 copies of a heap of 1000 such clumps at rest. They are timed in turns; values are medians of nine rounds.\n\n'
-    cargo bench --locked -p tumble-bench --bench heaps
+    printf '\n## Long steps\n\n'
+    printf 'The heap of 1000 clumps with `integrator = "implicit"`, compared with `splitting` and with other programs. '
+    printf '[bench/README.md](../bench/README.md) describes the set-up. '
+    printf 'The heaps on two cores consist of 1, 8 and 100 copies of a heap of 1000 such clumps at rest. They are timed in turns; '
+    printf 'values are medians of nine rounds.\n\n'
+    TUMBLE=$PWD/target/release/tumble PICTURE=$PWD/docs/pictures/big_steps.svg bench/big_steps/run.sh
+    printf '\n![penetration and cost](pictures/big_steps.svg)\n'
 } >>"$page"
 mv "$page" docs/benchmarks.md
 chmod 644 docs/benchmarks.md

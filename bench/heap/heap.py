@@ -75,33 +75,41 @@ def heap_statistics(centres):
         "wall contacts": int((depth > 0.0).sum()),
         "contacts per clump": 2.0 * (overlap > 0.0).sum() / len(centres),
         "wall contacts per clump": (depth > 0.0).sum() / len(centres),
+        "mean overlap (m)": mean_overlap(np.concatenate((overlap, depth.ravel()))),
         "deepest overlap of clumps (m)": overlap.max(initial=0.0),
         "deepest overlap with a wall (m)": max(0.0, depth.max()),
         "spheres outside": int((distance < 0.0).any(axis=1).sum()),
     }
 
 
-def time_to_rest(energies, clumps):
+def mean_overlap(overlaps):
+    """Mean of the positive overlaps (m), 0 without any."""
+    positive = overlaps[overlaps > 0.0]
+    return positive.mean() if len(positive) else 0.0
+
+
+def time_to_rest(energies, clumps, frame_time=FRAME):
     """Time at which the heap comes to rest (s), or None. `energies` (J) has one value per frame, from the start on."""
     limit = AT_REST * clumps * MASS * GRAVITY * 4.0 * R
     # the clumps start at rest, so earlier frames below the limit do not count
     moving = [frame for frame, energy in enumerate(energies) if energy > limit]
     after = moving[-1] + 1 if moving else 0
-    return after * FRAME if after < len(energies) else None
+    return after * frame_time if after < len(energies) else None
 
 
-def summarise(engine, clumps, energies, seconds, samples):
+def summarise(engine, clumps, energies, seconds, samples, frame_time=FRAME):
     """The result of a run, a dictionary. `seconds` has the times of the whole run and of its last part for each clock;
     the last of `samples`, which are heap statistics, is taken at the end."""
-    duration = (len(energies) - 1) * FRAME
+    duration = (len(energies) - 1) * frame_time
     result = {"engine": engine, "clumps": clumps, "simulated (s)": duration}
     for clock, (whole, last) in seconds.items():
         result[f"{clock} seconds"] = whole
+        result[f"{clock} seconds, last"] = last
         result[f"body-steps per {clock} second"] = clumps * duration / DT / whole
         result[f"body-steps per {clock} second, last"] = clumps * LAST / DT / last
     deepest = max(max(sample["deepest overlap of clumps (m)"], sample["deepest overlap with a wall (m)"]) for sample in samples)
     result |= samples[-1] | {"deepest overlap of all samples (m)": deepest}
-    result["time to rest (s)"] = time_to_rest(energies, clumps)
+    result["time to rest (s)"] = time_to_rest(energies, clumps, frame_time)
     result["kinetic energy per clump at the end (J)"] = energies[-1] / clumps
     result["kinetic energy per clump (J)"] = [energy / clumps for energy in energies]
     return result

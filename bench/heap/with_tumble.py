@@ -57,29 +57,43 @@ def centres(rows):
     return heap.spheres(poses[:, :3], poses[:, 3:])
 
 
+def solver_statistics(before, after):
+    """Figures that only tumble reports, from the summaries at the start of the last part of the run and at its end."""
+    result = {"deepest overlap of all steps (m)": after["max_depth"]}
+    if "solver" in after:
+        first, second = before["solver"], after["solver"]
+        result["iterations per step"] = second["iterations"] / after["steps"]
+        last = (second["iterations"] - first["iterations"]) / (after["steps"] - before["steps"])
+        result["iterations per step, last"] = last
+        result["steps not converged"] = second["steps_not_converged"]
+    return result
+
+
 def main():
     folder, seconds, tumble, *settings = sys.argv[1:]
     folder, seconds = pathlib.Path(folder), float(seconds)
     position, q = read_start(folder / "start.csv")
     version = run_command(tumble, "--version").split()[-1]
-    wall = []
+    summaries = []
     with tempfile.TemporaryDirectory() as scratch:
         out = pathlib.Path(scratch, "run")
         pairs = [f"duration={seconds - heap.LAST!r}", f"output.interval={heap.FRAME!r}", *settings]
         options = [word for pair in pairs for word in ("--set", pair)]
         run_command(tumble, "run", folder / "heap.toml", "--force", "--out", out, *options)
-        wall.append(json.loads(out.joinpath("summary.json").read_text())["wall_seconds"])
+        summaries.append(json.loads(out.joinpath("summary.json").read_text()))
         # wall_seconds covers the steps since the run resumed
         run_command(tumble, "resume", out, "--duration", seconds)
-        wall.append(json.loads(out.joinpath("summary.json").read_text())["wall_seconds"])
+        summaries.append(json.loads(out.joinpath("summary.json").read_text()))
         with out.joinpath("energy.csv").open() as file:
             energies = [float(row["kinetic"]) for row in csv.DictReader(file)]
         samples, first = sample_statistics(out / "trajectory.csv", len(position))
     difference = np.abs(first - heap.spheres(position, q)).max()
     if difference > 1e-12:
         raise SystemExit(f"with_tumble.py: the first frame and start.csv differ by {difference} m")
+    wall = [summary["wall_seconds"] for summary in summaries]
     engine = f"tumble {version}"
     result = heap.summarise(engine, len(position), energies, {"wall": (sum(wall), wall[-1])}, samples)
+    result |= solver_statistics(*summaries)
     print(json.dumps(result | {"settings": {"threads": THREADS} | dict(word.split("=", 1) for word in settings)}))
 
 
