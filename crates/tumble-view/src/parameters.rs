@@ -1,6 +1,6 @@
 //! The sliders of the page: key, value, unit and range of each number that can be changed.
 
-use tumble::{DVec3, Damping, Integrator, MaterialOverride};
+use tumble::{DVec3, Damping, MaterialOverride};
 use tumble_io::page::Parameter;
 use tumble_io::scene::{BodyScene, MassScene, Scene};
 
@@ -12,7 +12,8 @@ const MAX_TABLES: usize = 8;
 /// The sliders for a scene, in the order in which the page shows them.
 pub fn parameters(scene: &Scene) -> Vec<Parameter> {
     let mut list = ParameterList(Vec::new());
-    list.log("dt", scene.dt, "s", (1e-5, longest_dt(scene.integrator)));
+    // up to about the longest step of the integrator `implicit`
+    list.log("dt", scene.dt, "s", (1e-5, 0.016));
     list.vector("gravity", scene.gravity, "m/s²", 20.0);
     list.linear(
         "velocity_damping_stiffness",
@@ -36,11 +37,6 @@ pub fn parameters(scene: &Scene) -> Vec<Parameter> {
         list.body(&format!("body.{index}"), body);
     }
     list.0
-}
-
-/// The end of the slider of `dt` (s).
-fn longest_dt(integrator: Integrator) -> f64 {
-    if integrator == Integrator::Implicit { Integrator::LONGEST_IMPLICIT_DT } else { 1e-2 }
 }
 
 struct ParameterList(Vec<Parameter>);

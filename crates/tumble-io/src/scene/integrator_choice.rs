@@ -124,7 +124,8 @@ mod tests {
             let limits = StepLimits::new(&scene, &world);
             let dt = |integrator| limits.suggested_dt(integrator);
             let [splitting, implicit] = [Integrator::Splitting, Integrator::Implicit].map(dt);
-            assert!(splitting <= implicit && implicit <= 1.0 / 60.0, "{}", builtin.name);
+            let is_longer = splitting <= implicit || limits.critical.is_none();
+            assert!(is_longer && implicit <= 1.0 / 60.0, "{}", builtin.name);
             for integrator in [Integrator::Splitting, Integrator::Implicit, Integrator::Euler] {
                 let mut with = load_with_integrator(&scene, integrator, dt(integrator)).unwrap();
                 assert_eq!(with.scene.integrator, integrator);
