@@ -10,12 +10,12 @@ const BODY_FLOATS = 22;
 
 // one frame: bodies on circles, and a consistent energy ledger
 function frame(time, step, bodyCount) {
-  const buffer = new ArrayBuffer(80 + 4 * BODY_FLOATS * bodyCount);
+  const buffer = new ArrayBuffer(88 + 4 * BODY_FLOATS * bodyCount);
   const kinetic = 5 + 5 * Math.cos(time);
-  new Float64Array(buffer, 0, 10).set([time, step, kinetic, 10 - kinetic, 0, 0, 0, 0, 10, 0]);
+  new Float64Array(buffer, 0, 11).set([time, step, kinetic, 10 - kinetic, 0, 0, 0, 0, 0, 10, 0]);
   for (let body = 0; body < bodyCount; body++) {
     const angle = time + body;
-    const floats = new Float32Array(buffer, 80 + 4 * BODY_FLOATS * body, BODY_FLOATS);
+    const floats = new Float32Array(buffer, 88 + 4 * BODY_FLOATS * body, BODY_FLOATS);
     floats.set([0.5 * Math.cos(angle), 0, 0.5 * Math.sin(angle), Math.cos(angle / 2), 0, Math.sin(angle / 2), 0]);
     floats.set([0, 0, 0, 0, 1, 0, 0, 2, 0], 7);
   }

@@ -48,7 +48,7 @@ function within(what, promise) {
 const screenshot = (page, name) => pictures && page.screenshot({ path: path.join(pictures, `${name}.png`) });
 const lastFrame = (page) => page.evaluate(() => {
   const { time, step, ledger } = tumble.app.recording.frames.at(-1);
-  return { time, step, total: ledger[6], residual: ledger[7] };
+  return { time, step, total: ledger[7], residual: ledger[8] };
 });
 const parameter = (page, key) => page.evaluate((wanted) => tumble.app.header.parameters.find(({ key: k }) => k === wanted).value, key);
 const slider = (page, key) => page.locator(`.parameter[title="${key}"] input`);
@@ -224,6 +224,30 @@ async function slope(browser, viewer) {
   await closeSilent('slope', page);
 }
 
+// the integrator changes at the present state, with the step that the page announced
+async function integrators(browser) {
+  const viewer = new Viewer();
+  await viewer.start('heap');
+  const page = await open(browser, viewer.address, { viewport });
+  await connected('the heap connects', page);
+  await until('the plot shows what the implicit solution loses', page, () => document.querySelector('.legend').innerText.includes('Numerical'));
+  for (const name of ['splitting', 'implicit']) {
+    const { dt } = await page.evaluate((wanted) => tumble.app.header.integrators.find((choice) => choice.name === wanted), name);
+    const { time: from } = await lastFrame(page);
+    await page.selectOption('#integrator', name);
+    await until(`${name} is confirmed with its step`, page, ([n, h]) => tumble.app.header.integrator === n && tumble.app.header.dt === h, [name, dt]);
+    await until('time goes on', page, (t) => tumble.app.recording.end > t + 0.1 && tumble.app.recording.start === 0, from);
+  }
+  await page.selectOption('#integrator', 'splitting');
+  await until('splitting once more', page, () => tumble.app.header.integrator === 'splitting');
+  await slide(page, 'dt', 1000);
+  await until('a step that is too long for it is refused with a way out', page, () => document.querySelector('#notice').textContent.includes('implicit'));
+  check('the integrator stays', (await page.inputValue('#integrator')) === 'splitting');
+  await screenshot(page, 'live-integrators');
+  await closeSilent('integrators', page);
+  await viewer.stop();
+}
+
 async function finished(browser) {
   const run = path.join(folder, 'finished');
   execFileSync(tumble, ['run', 'task2', '--duration', '0.5', '--out', run], { stdio: 'ignore' });
@@ -258,6 +282,7 @@ try {
   await page.context().close();
   await slope(browser, viewer);
   await viewer.stop();
+  await integrators(browser);
   await finished(browser);
 } catch (error) {
   check('the test runs to its end', false, error.message);

@@ -318,6 +318,7 @@ export class App {
     for (const part of [this.overlays, this.table, this.timeline, this.renderer?.bodies]) if (part) part.header = header;
     this.renderer?.bodies.setWalls();
     this.panel.detailOf = null;
+    this.panel.writeFacts();
     this.writeTitle();
     this.changed();
   }

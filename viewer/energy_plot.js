@@ -6,10 +6,10 @@ import { LEDGER } from './palette.js';
 
 // indices into the ledger of a frame; the last two values are derived
 const GRAVITATIONAL = 1;
-const TOTAL = 6;
-const RESIDUAL = 7;
-const MOUSE_WORK = 8;
-const PRESCRIBED_WORK = 9;
+const TOTAL = 7;
+const RESIDUAL = 8;
+const MOUSE_WORK = 9;
+const PRESCRIBED_WORK = 10;
 // margins in CSS pixels
 const LEFT = 58;
 const RIGHT = 10;

@@ -1,4 +1,4 @@
-// The controls of a live run: connection state, a slider for each parameter, drag mode, saving.
+// The controls of a live run: connection state, the integrator, a slider for each parameter, drag mode, saving.
 
 import { button, element } from './dom.js';
 import { number } from './format.js';
@@ -26,6 +26,8 @@ export class LiveControls {
     this.state = element('span', { className: 'state', id: 'connection', role: 'status' });
     this.rate = element('span', { className: 'muted' });
     this.error = element('p', { className: 'error', role: 'alert', hidden: true });
+    this.integrator = element('select', { id: 'integrator', on: { change: () => this.chooseIntegrator() } });
+    this.integratorRow = element('label', { className: 'choice', title: 'integrator: time goes on from the present state, with the step that suits it' }, element('span', {}, 'integrator'), this.integrator);
     this.list = element('div', { className: 'parameters' });
     this.dragButton = button('Drag bodies with the mouse (G, or hold Shift)', 'Drag bodies', () => actions.toggleDragMode(), 'Drag bodies');
     this.dragButton.setAttribute('aria-pressed', 'false');
@@ -35,6 +37,7 @@ export class LiveControls {
     parent.replaceChildren(
       element('div', { className: 'top' }, this.state, this.rate),
       this.error,
+      this.integratorRow,
       this.list,
       element('div', { className: 'row-of-buttons' }, this.dragButton, save),
     );
@@ -57,6 +60,19 @@ export class LiveControls {
     }
   }
 
+  // shows the integrators that the scene can have; each is listed with the step that comes with it
+  integrators(choices, present) {
+    this.present = present;
+    this.integratorRow.hidden = choices.length < 2;
+    const options = choices.map(({ name, dt }) => element('option', { value: name }, name === present ? name : `${name}, dt = ${number(dt)} s`));
+    this.integrator.replaceChildren(...options);
+    this.integrator.value = present;
+  }
+
+  chooseIntegrator() {
+    this.actions.set('integrator', this.integrator.value);
+  }
+
   // builds the sliders, or updates their values if the list of keys has not changed
   parameters(list, bodies) {
     const keys = list.map(({ key }) => key).join('\n');
@@ -73,9 +89,10 @@ export class LiveControls {
     }
   }
 
-  // sets all sliders to the values of the server after it has refused a change
+  // sets all controls to the values of the server after it has refused a change
   restore(list, bodies) {
     this.restoring = true;
+    this.integrator.value = this.present;
     this.parameters(list, bodies);
   }
 

@@ -84,6 +84,7 @@ function startLive(app) {
       header = newHeader;
       isNewConnection = false;
       controls.parameters(header.parameters ?? [], header.bodies);
+      controls.integrators(header.integrators ?? [], header.integrator);
       if (isFirst) listen(app);
     },
     frame: (buffer) => header && app.addFrame(buffer),

@@ -14,6 +14,7 @@ export const LEDGER = [
   { name: 'drag', label: 'Drag', note: 'dissipated by drag', colour: '#56b4e9' },
   { name: 'dashpot', label: 'Dashpot', note: 'dissipated by dashpots', colour: '#cc79a7' },
   { name: 'slip', label: 'Slip', note: 'dissipated by slip', colour: '#d55e00' },
+  { name: 'numerical', label: 'Numerical', note: 'lost by the implicit solution of the contact law; it may be negative while bodies slide', colour: '#785ef0' },
 ];
 
 // colours of bodies: lighter variants of the palette

@@ -75,6 +75,16 @@ export class Panel {
   }
 
   about() {
+    this.facts = element('dl', {});
+    this.writeFacts();
+    const section = this.section('about', 'About this run', false, this.facts, element('p', { className: 'muted' }, `tumble ${this.app.header.version}`));
+    // the last section would open below the visible part of the panel
+    section.addEventListener('toggle', () => section.open && section.scrollIntoView({ block: 'nearest' }));
+    return section;
+  }
+
+  // writes the facts about the run, which change with the parameters of a live run
+  writeFacts() {
     const { header, recording } = this.app;
     const rows = [
       ['Integrator', header.integrator],
@@ -85,11 +95,7 @@ export class Panel {
     const tolerance = header.energy_tolerance ?? header.parameters?.find(({ key }) => key === 'energy_tolerance')?.value;
     if (tolerance) rows.splice(2, 0, ['Energy tolerance', number(tolerance)]);
     if (!header.live) rows.push(['Frames', frameCounts(header, recording)]);
-    const list = rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]);
-    const section = this.section('about', 'About this run', false, element('dl', {}, ...list), element('p', { className: 'muted' }, `tumble ${header.version}`));
-    // the last section would open below the visible part of the panel
-    section.addEventListener('toggle', () => section.open && section.scrollIntoView({ block: 'nearest' }));
-    return section;
+    this.facts.replaceChildren(...rows.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
   }
 
   // updates check boxes and captions, which keys can change too

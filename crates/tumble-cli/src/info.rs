@@ -1,36 +1,114 @@
-//! `tumble info`: prints the properties of a mesh, and what it will work as.
+//! `tumble info`: what a mesh will work as, or which integrator and time step suit a scene.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use tumble::{DVec3, MassModel, Mesh, Sampling, Shape, Watertightness};
-use tumble_io::mesh::{MeshFile, Prepared, Repair, Weld, WeldReport, prepare, read_mesh};
+use tumble_io::mesh::{Format, Repair, Weld};
+use tumble_io::scene::{BUILTIN, builtin, nearest};
 
-use crate::failure::{Failure, print};
-use crate::format::{count, number, wrapped_columns};
-use crate::mesh_verdict::{Verdicts, plural};
-
-/// The most holes, and the most edges of each kind, that are listed.
-const MAX_LISTED: usize = 3;
+use crate::failure::Failure;
+use crate::mesh_info::{MeshOptions, mesh_info};
+use crate::scene_info::scene_info;
 
 #[derive(Args)]
-#[command(after_help = "Mass, centre and moments are those of equal particles at the vertices.")]
+#[command(
+    after_help = "Of a mesh: size, mass, moments, and what it will work as. Mass, centre and moments are those of equal \
+    particles at the vertices.\n\
+    Of a scene: bodies, the critical time step of its contacts, and for each integrator a time step and what a \
+    simulated second costs with it. This is measured, in a few seconds."
+)]
 pub struct InfoArgs {
-    /// Mesh file: .obj, .stl, .ply, .gltf or .glb
-    mesh: PathBuf,
-    /// Factor for all coordinates
-    #[arg(long, default_value_t = 1.0, value_name = "FACTOR")]
-    scale: f64,
-    /// Mass of one particle (kg)
-    #[arg(long, default_value_t = 1.0, value_name = "KG")]
-    particle_mass: f64,
-    /// Whether to merge equal vertices, and those at open edges within a tolerance: true, false, or that
+    /// Mesh file (.obj, .stl, .ply, .gltf or .glb), scene file (.toml), or name of a built-in scene
+    #[arg(value_name = "MESH or SCENE")]
+    what: PathBuf,
+    /// Mesh: factor for all coordinates [default: 1]
+    #[arg(long, value_name = "FACTOR", allow_negative_numbers = true)]
+    scale: Option<f64>,
+    /// Mesh: mass of one particle (kg) [default: 1]
+    #[arg(long, value_name = "KG", allow_negative_numbers = true)]
+    particle_mass: Option<f64>,
+    /// Mesh: whether to merge equal vertices, and those at open edges within a tolerance: true, false, or that
     /// length in the unit of the file [default: true for .stl, .gltf and .glb]
     #[arg(long, value_name = "true|false|LENGTH", value_parser = parse_weld, allow_negative_numbers = true)]
     weld: Option<Weld>,
-    /// What to do to the triangles: none, or close (closes holes)
-    #[arg(long, default_value = "none", value_name = "none|close", value_parser = parse_repair)]
-    repair: Repair,
+    /// Mesh: what to do to the triangles: none, or close (closes holes) [default: none]
+    #[arg(long, value_name = "none|close", value_parser = parse_repair)]
+    repair: Option<Repair>,
+    /// Scene: set a key, e.g. collision.collision_stiffness=1e5; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+}
+
+pub fn info(args: &InfoArgs) -> Result<(), Failure> {
+    match scene_of(&args.what) {
+        Some(scene) => {
+            if let Some(option) = args.mesh_option() {
+                return Err(Failure::call(&format!(
+                    "{option} is for meshes, but {scene} is a scene"
+                )));
+            }
+            scene_info(scene, &args.set)
+        }
+        None if has_other_extension(&args.what) => Err(neither(&args.what)),
+        None if !args.set.is_empty() => {
+            let mesh = args.what.display();
+            Err(Failure::call(&format!("--set is for scenes, but {mesh} is a mesh")))
+        }
+        None => mesh_info(&args.what, args.mesh_options()),
+    }
+}
+
+impl InfoArgs {
+    fn mesh_options(&self) -> MeshOptions {
+        MeshOptions {
+            scale: self.scale.unwrap_or(1.0),
+            particle_mass: self.particle_mass.unwrap_or(1.0),
+            weld: self.weld,
+            repair: self.repair.unwrap_or_default(),
+        }
+    }
+
+    /// An option that is given and has a meaning for meshes only.
+    fn mesh_option(&self) -> Option<&'static str> {
+        let options = [
+            ("--scale", self.scale.is_some()),
+            ("--particle-mass", self.particle_mass.is_some()),
+            ("--weld", self.weld.is_some()),
+            ("--repair", self.repair.is_some()),
+        ];
+        options.into_iter().find_map(|(option, is_given)| is_given.then_some(option))
+    }
+}
+
+/// The argument if it is a scene: the name of a built-in one, or a file that ends in .toml.
+fn scene_of(what: &Path) -> Option<&str> {
+    let text = what.to_str()?;
+    let is_file = what.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"));
+    (is_file || builtin(text).is_some()).then_some(text)
+}
+
+/// Whether the name does not end as that of a mesh.
+fn has_other_extension(what: &Path) -> bool {
+    let format = what.extension().and_then(|e| Format::from_extension(&e.to_string_lossy()));
+    format.is_none()
+}
+
+/// The failure for a name that is neither that of a mesh nor that of a scene.
+fn neither(what: &Path) -> Failure {
+    let text = what.to_string_lossy();
+    let names = BUILTIN.map(|scene| scene.name);
+    let help = if what.is_dir() {
+        let scene = what.join("scene.toml");
+        let in_run = format!("; the scene of this run is {}", scene.display());
+        if scene.exists() { in_run } else { "; this is a folder".to_owned() }
+    } else {
+        nearest(&text, &names).map_or(String::new(), |near| format!("; did you mean `{near}`?"))
+    };
+    Failure::call(&format!(
+        "`{text}` is neither a mesh nor a scene: give a mesh file ({}), a scene file (.toml), or the name of a \
+         built-in scene (see `tumble scenes`){help}",
+        Format::SUPPORTED
+    ))
 }
 
 fn parse_weld(text: &str) -> Result<Weld, String> {
@@ -46,214 +124,4 @@ fn parse_weld(text: &str) -> Result<Weld, String> {
 
 fn parse_repair(text: &str) -> Result<Repair, String> {
     Repair::from_name(text).ok_or_else(|| "it must be none or close".to_owned())
-}
-
-/// A mesh as a body would have it.
-struct Report<'a> {
-    file: &'a MeshFile,
-    prepared: &'a Prepared,
-    shape: &'a Shape,
-    args: &'a InfoArgs,
-    /// The bounding box of all vertices (m).
-    bounds: [DVec3; 2],
-}
-
-pub fn info(args: &InfoArgs) -> Result<(), Failure> {
-    for (name, value) in [("--scale", args.scale), ("--particle-mass", args.particle_mass)] {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(Failure::call(&format!("{name} must be above 0, but is {value}")));
-        }
-    }
-    let file = read_mesh(&args.mesh, args.weld).map_err(|error| Failure::call(&error))?;
-    let mut prepared = prepare(&file.mesh, args.repair).map_err(|error| {
-        Failure::call(&format!("{}, in the unit of the file: {error}", args.mesh.display()))
-    })?;
-    for vertex in &mut prepared.mesh.vertices {
-        *vertex *= args.scale;
-    }
-    let shape = Shape::from_mesh(&prepared.mesh, Sampling::Vertices, MassModel::Particles)
-        .map_err(|error| Failure::call(&error))?;
-    let infinite = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-    let vertices = prepared.mesh.vertices.iter();
-    let bounds = vertices.fold(infinite, |[low, high], &v| [low.min(v), high.max(v)]);
-    let report = Report { file: &file, prepared: &prepared, shape: &shape, args, bounds };
-    print(&wrapped_columns(&report.rows()))
-}
-
-type Row = (&'static str, String);
-
-impl Report<'_> {
-    fn rows(&self) -> Vec<Row> {
-        let mut rows = self.of_file();
-        rows.extend(self.of_particles());
-        rows.extend(self.of_triangles());
-        rows.push(("sha256", self.file.sha256.clone()));
-        let size = self.bounds[1] - self.bounds[0];
-        let verdicts = Verdicts {
-            file: self.file,
-            mesh: &self.prepared.mesh,
-            one_sided: self.prepared.orientation.one_sided > 0,
-            scale: self.args.scale,
-            size: size.max_element(),
-        };
-        rows.extend(verdicts.rows(self.shape));
-        rows
-    }
-
-    fn of_file(&self) -> Vec<Row> {
-        let (file, mesh) = (self.file, &self.prepared.mesh);
-        let objects = plural(file.object_count, "object", "objects");
-        let mut rows = vec![("file", format!("{}, {objects}", file.format))];
-        if let Some(unit) = file.header_unit {
-            let text =
-                format!("the header names {}; numbers are taken as metres times scale", unit.name);
-            rows.push(("unit", text));
-        }
-        rows.push(("particles", particles(file)));
-        rows.extend(file.weld.as_ref().map(|weld| ("weld", merged(weld))));
-        rows.push(("triangles", count(mesh.triangles.len() as u64)));
-        let notes = self.prepared.notes().into_iter().chain(self.prepared.repair_note());
-        rows.extend(notes.map(|note| ("", note)));
-        rows
-    }
-
-    fn of_particles(&self) -> Vec<Row> {
-        let (shape, particle_mass) = (self.shape, self.args.particle_mass);
-        let mass = particle_mass * shape.moments().count;
-        let axes = shape.principal().axes;
-        let moments = shape.principal().moments * mass;
-        let [low, high] = self.bounds;
-        vec![
-            ("mass", format!("{} kg ({} kg per particle)", number(mass), number(particle_mass))),
-            ("centre of mass", format!("{} m", self.place(shape.centre()))),
-            ("size", format!("{} m", self.place(high - low))),
-            ("bounds", format!("{} to {} m", self.place(low), self.place(high))),
-            ("bounding radius", format!("{} m about the centre of mass", number(shape.radius()))),
-            (
-                "principal moments",
-                format!("{} kg·m²", vector(moments, moments.abs().max_element())),
-            ),
-            (
-                "principal axes",
-                [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| vector(axis, 1.0)).join(", "),
-            ),
-            ("rotational axes", shape.principal().rotation_count().to_string()),
-        ]
-    }
-
-    fn of_triangles(&self) -> Vec<Row> {
-        let mesh = &self.prepared.mesh;
-        let mut rows = Vec::new();
-        let edges = mesh.watertightness();
-        rows.push(("watertight", watertight(&edges)));
-        if edges.non_manifold > 0 {
-            rows.extend(self.non_manifold(mesh));
-        }
-        if !edges.is_closed() {
-            rows.extend(self.holes(mesh));
-        }
-        if let Some(place) = self.prepared.orientation.first_one_sided {
-            let count = plural(self.prepared.orientation.one_sided, "edge", "edges");
-            let at = self.place(place * self.args.scale);
-            let text =
-                format!("no winding is consistent at {count}, as on a Möbius strip: at {at}");
-            rows.push(("one-sided", text));
-        }
-        if let Ok(solid) = mesh.solid_integrals() {
-            let (volume, centre) = (number(solid.measure), self.place(solid.centre));
-            rows.push(("volume", format!("{volume} m³, centred at {centre} m")));
-        }
-        if let Ok(shell) = mesh.shell_integrals() {
-            rows.push(("surface area", format!("{} m²", number(shell.measure))));
-        }
-        rows
-    }
-
-    fn non_manifold(&self, mesh: &Mesh) -> Option<Row> {
-        let edges = mesh.non_manifold_edges();
-        let first: Vec<String> = edges.iter().take(MAX_LISTED).map(|&p| self.place(p)).collect();
-        let more = if edges.len() > first.len() { ", …" } else { "" };
-        let count = plural(edges.len(), "edge", "edges");
-        let text = format!("more than two triangles at {count}: at {}{more}", first.join(", "));
-        (!first.is_empty()).then_some(("non-manifold", text))
-    }
-
-    fn holes(&self, mesh: &Mesh) -> Vec<Row> {
-        let holes = mesh.holes();
-        if holes.is_empty() {
-            return Vec::new();
-        }
-        let mut rows = vec![("holes", count(holes.len() as u64))];
-        rows.extend(holes.iter().take(MAX_LISTED).map(|hole| {
-            let edges = plural(hole.vertices.len(), "edge", "edges");
-            let (at, length) = (self.place(hole.centre), number(hole.perimeter));
-            let planar = if hole.is_planar { "planar" } else { "not planar" };
-            ("", format!("at {at} m: {edges}, {length} m around, {planar}"))
-        }));
-        if holes.len() > MAX_LISTED {
-            rows.push(("", "…".to_owned()));
-        }
-        rows
-    }
-
-    /// A point or a length of the mesh, without the rounding noise of its coordinates.
-    fn place(&self, place: DVec3) -> String {
-        let [low, high] = self.bounds;
-        vector(place, low.abs().max(high.abs()).max_element())
-    }
-}
-
-fn watertight(edges: &Watertightness) -> String {
-    if edges.triangles == 0 {
-        return "no: there are no triangles".to_owned();
-    }
-    if edges.is_closed() {
-        return "yes".to_owned();
-    }
-    let open = (edges.open_edges > 0).then(|| plural(edges.open_edges, "open edge", "open edges"));
-    let wound = (edges.wrongly_wound > 0)
-        .then(|| plural(edges.wrongly_wound, "wrongly wound edge", "wrongly wound edges"));
-    format!("no: {}", open.into_iter().chain(wound).collect::<Vec<_>>().join(", "))
-}
-
-fn particles(file: &MeshFile) -> String {
-    let (kept, all) = (file.mesh.vertices.len(), file.file_vertex_count);
-    if kept == all {
-        let mut text = count(kept as u64);
-        let repeated = if file.weld.is_none() { file.mesh.welded(Some(0.0)).equal } else { 0 };
-        if repeated > 0 {
-            let repeated = count(repeated as u64);
-            text += &format!(", {repeated} of them where another one is: weld = true merges them");
-        }
-        return text;
-    }
-    format!("{} of {} vertices", count(kept as u64), count(all as u64))
-}
-
-/// What was merged.
-fn merged(weld: &WeldReport) -> String {
-    let tolerance = number(weld.tolerance);
-    let merged = |n| plural(n, "vertex", "vertices");
-    let mut text = match (weld.equal, weld.near) {
-        (0, 0) if weld.tolerance == 0.0 => "no vertices are equal".to_owned(),
-        (0, 0) => format!("no vertices are equal, nor within {tolerance} at open edges"),
-        (equal, 0) => format!("{} merged, equal to others", merged(equal)),
-        (equal, near) => format!(
-            "{} merged: {} equal to others, {} within {tolerance} of others, at open edges",
-            merged(equal + near),
-            count(equal as u64),
-            count(near as u64)
-        ),
-    };
-    if weld.collapsed > 0 {
-        let triangles = plural(weld.collapsed, "triangle", "triangles");
-        text += &format!("; {triangles} of no area left out");
-    }
-    text
-}
-
-/// A vector among others of this size; what is rounding beside that is 0.
-fn vector(v: DVec3, size: f64) -> String {
-    let [x, y, z] = v.to_array().map(|x| number(if x.abs() < 1e-9 * size { 0.0 } else { x }));
-    format!("({x}, {y}, {z})")
 }

@@ -3,6 +3,8 @@
 //! | file | content |
 //! |---|---|
 //! | `run`, `resume`, `export`, `scenes`, `info`, `verify`, `view` | one subcommand each |
+//! | `mesh_info`, `mesh_verdict` | what `info` says about a mesh |
+//! | `scene_info`, `integrator_cost` | what `info` says about a scene |
 //! | `report` | what `run` and `resume` print at the end |
 //! | `scene_argument` | loads the scene named on the command line |
 //! | `failure` | exit status and message of a failure |
@@ -15,12 +17,15 @@ mod export;
 mod failure;
 mod format;
 mod info;
+mod integrator_cost;
 mod interrupt;
+mod mesh_info;
 mod mesh_verdict;
 mod report;
 mod resume;
 mod run;
 mod scene_argument;
+mod scene_info;
 mod scenes;
 mod verify;
 mod view;
@@ -55,7 +60,7 @@ enum Command {
     Export(export::ExportArgs),
     /// List the built-in scenes, or print one
     Scenes(scenes::ScenesArgs),
-    /// Print the properties of a mesh: size, mass, principal moments, volume
+    /// Print the properties of a mesh, or compare the integrators for a scene
     Info(info::InfoArgs),
     /// Compare simulations with theory
     Verify(verify::VerifyArgs),

@@ -49,9 +49,26 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
         ("animation", shown(&folder.path().join("motion.html"))),
     ]);
     rows.extend(finished.notes.iter().map(|note| ("note", note.clone())));
+    let others = has_slow_contacts(&s.integrator, s.wall_seconds, s.body_depth_end);
+    rows.extend(others.then(|| ("hint", compare_integrators(folder))));
     let warnings = warnings(s, relative).into_iter().chain(finished.warnings.iter().cloned());
     rows.extend(warnings.map(|warning| ("warning", warning)));
     columns(&rows)
+}
+
+/// Steps that take longer than this (s) are worth a comparison.
+const LONG: f64 = 20.0;
+
+/// Whether another integrator may save time: the steps took long, and bodies lie on each other at the end.
+fn has_slow_contacts(integrator: &str, seconds: f64, body_depth: f64) -> bool {
+    integrator == "splitting" && seconds > LONG && body_depth > 0.0
+}
+
+fn compare_integrators(folder: &RunFolder) -> String {
+    let scene = shown(&folder.path().join("scene.toml"));
+    format!(
+        "`tumble info {scene}` measures what this would cost with `implicit`, whose steps may be longer"
+    )
 }
 
 /// The path, in one line.
@@ -123,4 +140,17 @@ fn warnings(s: &Summary, relative_residual: f64) -> Vec<String> {
         warnings.push(format!("the residual is {percent:+.2} % of the energy: {remedy}"));
     }
     warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_long_runs_with_bodies_in_contact_get_the_hint() {
+        assert!(has_slow_contacts("splitting", 100.0, 1e-6));
+        let others =
+            [("splitting", 5.0, 1e-6), ("splitting", 100.0, 0.0), ("implicit", 100.0, 1e-6)];
+        assert!(others.iter().all(|&(name, time, depth)| !has_slow_contacts(name, time, depth)));
+    }
 }

@@ -350,3 +350,18 @@ fn a_duration_below_the_step_names_both() {
         assert_eq!(message.matches("error: ").count(), 1, "{message}");
     }
 }
+
+#[test]
+fn a_step_above_the_critical_one_can_be_kept_with_the_implicit_integrator() {
+    let dir = TestDir::new();
+    let walls = "[[wall]]\nnormal = [0, 1, 0]\noffset = -5\n";
+    let scene = |dt: &str| format!("{dt}\n[collision]\ncollision_stiffness = 1e7\n{walls}{BODY}");
+    let keep = "keep it with `integrator = \"implicit\"`";
+    assert_contains(&dir.rejected(scene("dt = 0.01"), &[]), &["stable only up to", keep]);
+    assert_contains(&dir.rejected(scene(""), &[]), &["add the line `dt = ", keep]);
+    // it is not meant for steps that long
+    let message = dir.rejected(scene("dt = 0.1"), &[]);
+    assert!(message.contains("stable only up to") && !message.contains("implicit"), "{message}");
+    dir.write("s.toml", scene("dt = 0.01\nduration = 0.1"));
+    dir.run(&["s.toml", "--set", "integrator=implicit"], "out");
+}

@@ -24,6 +24,7 @@
 //! | `save` | the present state written as a scene file |
 //! | `capacity` | how large a scene the viewer accepts |
 //! | `session` | [`Session`]: scene, world and pending edits; no socket and no clock |
+//! | `integrators` | the integrators that the page offers, with the steps that suit them |
 //! | `parameters` | the list of sliders: key, value, unit and range |
 //! | [`header`] | what a page needs once: shapes, bodies, walls, sliders (JSON) |
 //! | [`frame`] | one frame (binary) |
@@ -61,6 +62,7 @@ mod command;
 pub mod frame;
 pub mod header;
 mod http;
+mod integrators;
 mod limits;
 mod parameters;
 mod save;

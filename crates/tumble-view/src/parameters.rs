@@ -12,7 +12,8 @@ const MAX_TABLES: usize = 8;
 /// The sliders for a scene, in the order in which the page shows them.
 pub fn parameters(scene: &Scene) -> Vec<Parameter> {
     let mut list = ParameterList(Vec::new());
-    list.log("dt", scene.dt, "s", (1e-5, 1e-2));
+    // up to about the longest step of the integrator `implicit`
+    list.log("dt", scene.dt, "s", (1e-5, 0.016));
     list.vector("gravity", scene.gravity, "m/s²", 20.0);
     list.linear(
         "velocity_damping_stiffness",

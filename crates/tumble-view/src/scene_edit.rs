@@ -1,4 +1,4 @@
-//! A scene with one key changed.
+//! A scene with keys changed.
 
 use std::path::Path;
 
@@ -24,25 +24,26 @@ pub fn applies_at_once(key: &str) -> bool {
     first != Some("body") || MATERIAL_KEYS.contains(&last.unwrap_or_default())
 }
 
-/// Applies an edit to a scene and loads the result, with all checks of a scene file.
+/// Applies edits to a scene and loads the result, with all checks of a scene file.
 ///
 /// # Errors
 /// The problems that the scene reader found.
-pub fn load_edited(scene: &Scene, edit: &SceneEdit) -> Result<Loaded, String> {
-    let SceneEdit { key, value } = edit;
+pub fn load_edited(scene: &Scene, edits: &[SceneEdit]) -> Result<Loaded, String> {
     let mut root: Value = toml::from_str::<Table>(&scene.to_toml())
         .map(Value::Table)
         .map_err(|error| format!("the scene cannot be read again: {error}"))?;
-    let path: Vec<&str> = key.split('.').collect();
-    let mut removed = false;
-    if value.is_none() {
+    for SceneEdit { key, .. } in edits.iter().filter(|edit| edit.value.is_none()) {
+        let path: Vec<&str> = key.split('.').collect();
+        let mut removed = false;
         visit(&mut root, &path, &mut |table, last| removed |= table.remove(last).is_some());
+        if !removed {
+            return Err(format!("`{key}` is not set"));
+        }
     }
-    if value.is_none() && !removed {
-        return Err(format!("`{key}` is not set"));
-    }
-    let sets = value.iter().map(|value| format!("{key}={value}")).collect();
-    let text = toml::to_string(&root).map_err(|error| format!("`{key}`: {error}"))?;
+    let set = |SceneEdit { key, value }: &SceneEdit| Some(format!("{key}={}", value.as_ref()?));
+    let sets = edits.iter().filter_map(set).collect();
+    let text = toml::to_string(&root)
+        .map_err(|error| format!("the scene cannot be written again: {error}"))?;
     load(scene, text, sets)
 }
 

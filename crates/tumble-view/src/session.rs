@@ -7,6 +7,7 @@ use tumble_io::scene::{Loaded, Scene};
 
 use crate::capacity::check_capacity;
 use crate::command::{Command, SceneEdit};
+use crate::integrators::with_dt;
 use crate::save;
 use crate::scene_edit::{applies_at_once, load_edited};
 use crate::transfer::transfer_state;
@@ -170,12 +171,14 @@ impl Session {
     /// Edits the scene. The edit takes effect at once if the key allows it and the simulation has not failed,
     /// otherwise at the next reset.
     fn edit(&mut self, edit: &SceneEdit) -> Result<(), String> {
-        let next = Self::load_edited(&self.next_scene, edit)?;
+        let scenes = [(&self.scene, &self.world), (&self.next_scene, &self.next_world)];
+        let edits = with_dt(edit, &scenes);
+        let next = Self::load_edited(&self.next_scene, &edits)?;
         if applies_at_once(&edit.key) && self.error.is_none() {
             let (scene, mut world) = if self.pending.is_empty() {
                 (next.scene.clone(), next.world.clone())
             } else {
-                let present = Self::load_edited(&self.scene, edit)?;
+                let present = Self::load_edited(&self.scene, &edits)?;
                 (present.scene, present.world)
             };
             transfer_state(&self.world, &mut world)?;
@@ -194,8 +197,8 @@ impl Session {
         Ok(())
     }
 
-    fn load_edited(scene: &Scene, edit: &SceneEdit) -> Result<Loaded, String> {
-        let mut loaded = load_edited(scene, edit)?;
+    fn load_edited(scene: &Scene, edits: &[SceneEdit]) -> Result<Loaded, String> {
+        let mut loaded = load_edited(scene, edits)?;
         check_capacity(&loaded.world)?;
         write_positions(&mut loaded.scene, &loaded.world);
         Ok(loaded)

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use tumble::{BodyModel, State, World};
+use tumble::{BodyModel, Integrator, State, World};
 
 /// Larger step numbers are not exact as doubles.
 const MAX_STEPS: f64 = 9e15;
@@ -12,6 +12,7 @@ const MAX_STEPS: f64 = 9e15;
 /// - Time is a whole number of steps: with another dt it moves on to the next multiple of the new one.
 /// - Friction springs at walls are anchored to the walls: they are released when a wall or a coefficient of
 ///   friction changes. Friction springs between bodies are released also when a surface or a motion changes.
+/// - The integrators hold friction springs in different ways: all are released when the integrator changes.
 ///
 /// # Errors
 /// Why the simulation cannot continue in `new`.
@@ -27,9 +28,20 @@ pub fn transfer_state(old: &World, new: &mut World) -> Result<(), String> {
         state.step = steps as u64;
         state.time = state.step as f64 * after.dt;
     }
-    if before.walls != after.walls || wall_friction(old) != wall_friction(new) {
+    // the time since the latest kick is half a step of flight
+    let is_implicit = after.integrator == Integrator::Implicit;
+    let was_implicit = before.integrator == Integrator::Implicit;
+    let since_kick = if was_implicit { state.since_kick } else { 0.5 * before.dt };
+    state.since_kick = if is_implicit { since_kick.min(0.5 * after.dt) } else { 0.0 };
+    if before.integrator != after.integrator {
+        state.step_divisions = new.state().step_divisions;
+    }
+    if before.integrator != after.integrator
+        || before.walls != after.walls
+        || wall_friction(old) != wall_friction(new)
+    {
         state.springs.iter_mut().for_each(Vec::clear);
-        state.pair_springs.clear();
+        release_pairs(&mut state);
     }
     let pair_contact = |world: &World| -> Vec<_> {
         let bodies = world.model().bodies.iter();
@@ -38,7 +50,7 @@ pub fn transfer_state(old: &World, new: &mut World) -> Result<(), String> {
             .collect()
     };
     if pair_contact(old) != pair_contact(new) {
-        state.pair_springs.clear();
+        release_pairs(&mut state);
     }
     // the energy error carried by refined steps is only compensated by refined steps
     if after.energy_tolerance.is_none() {
@@ -53,6 +65,12 @@ pub fn transfer_state(old: &World, new: &mut World) -> Result<(), String> {
     }
     new.restore(state)
         .map_err(|error| format!("the simulation cannot continue: {error}; reset first"))
+}
+
+/// Releases the friction springs between bodies; the impulses of `implicit` belong to them.
+fn release_pairs(state: &mut State) {
+    state.pair_springs.clear();
+    state.pair_impulses.clear();
 }
 
 /// The coefficients of friction of all bodies at all walls.

@@ -1,6 +1,6 @@
 //! Errors of building and stepping a world.
 
-use crate::{BodyDepth, SurfaceError};
+use crate::{BodyDepth, Integrator, SurfaceError};
 
 /// Why a world cannot be built.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,7 +99,12 @@ impl std::fmt::Display for BuildError {
             Self::Unstable { dt, critical, body } => write!(
                 f,
                 "`dt` is {dt} s, but contact of body \"{body}\" is stable only up to {critical:.3e} s; \
-                 use a smaller `dt` or `collision_stiffness`, or insist with --force"
+                 use a smaller `dt` or `collision_stiffness`,{} or insist with --force",
+                if *dt <= Integrator::LONGEST_IMPLICIT_DT {
+                    " keep it with `integrator = \"implicit\"`,"
+                } else {
+                    ""
+                }
             ),
             Self::Surface { body, error } => {
                 write!(f, "body \"{body}\" cannot have `surface = \"mesh\"`: {error}")

@@ -25,6 +25,9 @@ pub enum Integrator {
 }
 
 impl Integrator {
+    /// The longest step (s) for which [`Integrator::Implicit`] is meant.
+    pub const LONGEST_IMPLICIT_DT: f64 = 1.0 / 60.0;
+
     /// The name in scene files.
     pub fn name(self) -> &'static str {
         match self {

@@ -38,10 +38,21 @@ pub struct Header {
     box_walls: Option<BoxHeader>,
     /// Parameters that the live page can change; empty in `motion.html`.
     pub parameters: Vec<Parameter>,
+    /// The integrators that the live page can change to; empty in `motion.html`.
+    pub integrators: Vec<IntegratorChoice>,
     /// Number of frames in the page.
     pub frame_count: usize,
     /// Number of recorded frames, including those that the page omits.
     pub frames_recorded: u64,
+}
+
+/// An integrator that the live page can change to.
+#[derive(Clone, Debug, Serialize)]
+pub struct IntegratorChoice {
+    /// Its name.
+    pub name: &'static str,
+    /// The time step that comes with it (s).
+    pub dt: f64,
 }
 
 /// A parameter that the live page can change.
@@ -137,6 +148,7 @@ impl Header {
             walls: wall_headers(world),
             box_walls: scene.box_walls.as_ref().map(|box_walls| box_header(&box_walls.walls)),
             parameters: Vec::new(),
+            integrators: Vec::new(),
             frame_count: 0,
             frames_recorded: 0,
         }

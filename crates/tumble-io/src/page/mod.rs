@@ -17,5 +17,5 @@ mod recording;
 mod tests;
 
 pub use assemble::{live_html, motion_html};
-pub use header::{Header, Parameter};
+pub use header::{Header, IntegratorChoice, Parameter};
 pub use recording::{BodyFrame, Recording, encode_frame, record_size};

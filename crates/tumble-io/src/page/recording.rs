@@ -43,15 +43,15 @@ impl BodyFrame {
     }
 }
 
-/// Size of the record of one frame (bytes): ten `f64`, and 22 `f32` per body.
+/// Size of the record of one frame (bytes): eleven `f64`, and 22 `f32` per body.
 pub fn record_size(body_count: usize) -> usize {
-    80 + 88 * body_count
+    88 + 88 * body_count
 }
 
 /// Appends the record of one frame to `out`.
 ///
 /// All numbers are little-endian. As `f64`: time, step, and the energies kinetic, gravitational,
-/// elastic, drag, dashpot, slip, total and residual. Then as `f32` for each body: position, orientation
+/// elastic, drag, dashpot, slip, numerical, total and residual. Then as `f32` for each body: position, orientation
 /// w x y z, velocity, angular velocity, angular momentum, contact force and contact torque.
 pub fn encode_frame(
     out: &mut Vec<u8>,
@@ -62,9 +62,9 @@ pub fn encode_frame(
     // the page computes the work as the sum of the parts minus the total
     let EnergyRow { time, kinetic, gravitational, elastic, drag, .. } = *row;
     let EnergyRow { dashpot, slip, numerical, work: _, total, residual, .. } = *row;
-    // it has no part for what the implicit solution loses
-    let total = total - numerical;
-    let ledger = [kinetic, gravitational, elastic, drag, dashpot, slip, total, residual];
+    let losses = [drag, dashpot, slip, numerical];
+    let ledger =
+        [kinetic, gravitational, elastic].into_iter().chain(losses).chain([total, residual]);
     for number in [time, step as f64].into_iter().chain(ledger) {
         out.extend(number.to_le_bytes());
     }

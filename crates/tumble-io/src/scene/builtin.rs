@@ -19,7 +19,7 @@ macro_rules! builtin {
 }
 
 /// All built-in scenes, in teaching order.
-pub const BUILTIN: [Builtin; 18] = builtin![
+pub const BUILTIN: [Builtin; 19] = builtin![
     "task1",
     "task2",
     "task1-cat",
@@ -37,6 +37,7 @@ pub const BUILTIN: [Builtin; 18] = builtin![
     "cats",
     "hopper",
     "drum",
+    "heap",
     "conveyor",
 ];
 

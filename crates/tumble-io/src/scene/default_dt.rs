@@ -37,7 +37,7 @@ pub fn problem(top: &Reader, body: Option<&Reader>, unstable: &Unstable) -> Prob
     let enough = rounded_down(*critical);
     let message = format!(
         "{cause}: the default `dt` of {dt} s is too long for contact of body \"{body}\", which is stable only up to \
-         {critical:.3e} s; add the line `dt = {enough:e}`, or insist with --force"
+         {critical:.3e} s; add the line `dt = {enough:e}`, keep it with `integrator = \"implicit\"`, or insist with --force"
     );
     Problem::new(reader.place_of(key), reader.key(key), message)
 }

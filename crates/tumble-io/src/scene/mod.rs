@@ -12,6 +12,8 @@
 //! 5. `geometry` (with `mesh_file`, which finds meshes), `copies`: build shapes, masses and poses; `load` builds the world from them.
 //! 6. `write`: turns the description back into TOML.
 //!
+//! `integrator_choice` knows which time step suits a scene with each integrator.
+//!
 //! To add a key: add a field to its struct in `description`, read it in the file of its table (step 4),
 //! write it in `write`, and pass it to the builder in `load`. Then document it in `docs/formats.md` and
 //! add it to `fuzz/dictionaries/scene`.
@@ -24,6 +26,7 @@ mod default_dt;
 mod description;
 mod geometry;
 mod geometry_error;
+mod integrator_choice;
 mod load;
 mod mesh_file;
 mod motion;
@@ -42,6 +45,7 @@ pub use description::{
     BodyScene, BoxScene, Copies, Geometry, MassScene, MeshNotes, MeshScene, MotionScene,
     OutputScene, Scene, WallScene,
 };
+pub use integrator_choice::{StepLimits, load_with_integrator};
 pub use load::{LoadOptions, Loaded, load_builtin, load_file, load_text};
 pub(crate) use load::{load_recorded, load_recorded_file};
 pub(crate) use mesh_file::{copy_name, is_copy};
