@@ -1,9 +1,9 @@
 //! The tangential force of wall contacts: Coulomb friction with friction springs.
 
-use tumble::{Body, DMat3, DVec3, Damping, Integrator, Material, Mesh, Shape, World};
+use tumble::{Body, DMat3, DVec3, Damping, Material, Mesh, Shape, World, WorldBuilder};
 
 use crate::check::{Case, Check, Error, Outcome};
-use crate::setup::{self, G, step_until, world_with_floor};
+use crate::setup::{self, FLOOR, G, step_until, world_with_floor};
 
 pub(crate) const SLIDING: Case = Case {
     name: "sliding",
@@ -64,34 +64,28 @@ fn sliding() -> Outcome {
 }
 
 /// A block on a slope of `angle` (rad): the floor is horizontal and gravity is tilted.
-fn world_with_slope(
-    integrator: Integrator,
-    material: Material,
-    angle: f64,
-    dt: f64,
-) -> Result<World, Error> {
+fn on_slope(world: WorldBuilder, material: &Material, angle: f64) -> Result<World, Error> {
     let gravity = DVec3::new(libm::sin(angle), -libm::cos(angle), 0.0) * G;
-    let world = world_with_floor(material).integrator(integrator).gravity(gravity).dt(dt);
-    Ok(world.body(block(&material)?).build()?)
+    Ok(world.material(*material).gravity(gravity).wall(FLOOR).body(block(material)?).build()?)
 }
 
 fn slope() -> Outcome {
-    slope_checks(Integrator::Splitting, 1e-4, "")
+    slope_checks(&World::builder().dt(1e-4), "")
 }
 
-/// The checks of a block on a slope; their names end with `setting`.
-pub(crate) fn slope_checks(integrator: Integrator, dt: f64, setting: &str) -> Outcome {
+/// The checks of a block on a slope in worlds with the settings of `builder`; their names end with `setting`.
+pub(crate) fn slope_checks(builder: &WorldBuilder, setting: &str) -> Outcome {
     let friction: f64 = 0.5;
     let friction_angle = libm::atan(friction);
     let material = Material { collision_stiffness: 1e5, ..material(friction) };
-    let mut world = world_with_slope(integrator, material, 0.9 * friction_angle, dt)?;
+    let mut world = on_slope(builder.clone(), &material, 0.9 * friction_angle)?;
     step_until(&mut world, 3.0)?;
     let position = world.body(0).position();
     step_until(&mut world, 13.0)?;
     let creep = (world.body(0).position() - position).length() / 10.0;
 
     let angle = 1.1 * friction_angle;
-    let mut world = world_with_slope(integrator, material, angle, dt)?;
+    let mut world = on_slope(builder.clone(), &material, angle)?;
     step_until(&mut world, 1.0)?;
     let before = world.body(0).velocity().x;
     step_until(&mut world, 2.0)?;

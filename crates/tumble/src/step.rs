@@ -1,7 +1,9 @@
 //! The time step, as a list of stages.
 
 use crate::contact::Outcome;
-use crate::stage::{self, ImplicitSteps, around_body_contact, around_implicit_contact};
+use crate::stage::{
+    self, ImplicitStep, ImplicitSteps, around_body_contact, around_implicit_contact,
+};
 use crate::{Batch, Integrator, Model, Scratch, State, StepError, for_each_batch, parallel};
 
 /// Advances `state` by one step of `model.dt`, or returns a [`StepError`] when the new state fails a check.
@@ -41,10 +43,10 @@ fn drift_kick_drift(model: &Model, state: &mut State, scratch: &mut Scratch) {
 /// divided, so that none passes another.
 fn implicit(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let mut parts = ImplicitSteps::new(state);
-    while let Some(h) = parts.next(model, state) {
+    while let Some(part) = parts.next(model, state) {
         scratch.before.copy_from(state);
-        let outcome = implicit_step(model, state, scratch, h);
-        parts.finish(model, (state, &mut scratch.before), outcome, h);
+        let outcome = implicit_step(model, state, scratch, part);
+        parts.finish(model, (state, &mut scratch.before), outcome, part.length);
     }
 }
 
@@ -52,15 +54,16 @@ fn implicit_step(
     model: &Model,
     state: &mut State,
     scratch: &mut Scratch,
-    h: f64,
+    part: ImplicitStep,
 ) -> Option<Outcome> {
+    let h = part.length;
     let before = |batch: &mut Batch| {
         stage::find_free_flight(batch, h);
         stage::drift_free_flight(batch, h);
         stage::drift(batch, 0.5 * h);
         stage::move_kinematic(batch, 0.0, 0.5 * h);
     };
-    around_implicit_contact((model, state, scratch), h, before, |batch| {
+    around_implicit_contact((model, state, scratch), part, before, |batch| {
         stage::drift(batch, 0.5 * h);
         stage::move_kinematic(batch, 0.5 * h, h);
         stage::check(batch);

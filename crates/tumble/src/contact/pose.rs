@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::pair::feature_size;
 use super::since_kick::SinceKick;
 use crate::kinematics::Kinematics;
 use crate::{BodyModel, BodyState, Integrator, Model, Motion};
@@ -33,6 +34,10 @@ pub(crate) struct BodyPose {
     /// the step. Else 0 (m).
     pub reach: f64,
 }
+
+/// Gaps that a kick may close, where bodies that do not move are near each other, as a share of the size of a body. The whole path would cost
+/// a falling heap a fifth of its time.
+const KICKED_GAP: f64 = 0.01;
 
 /// Stands for a wall as the second body of a pair.
 static WALL: BodyPose = BodyPose {
@@ -85,7 +90,12 @@ impl BodyPose {
             list_valid_until: 0.0,
             step_displacement,
             reach: if model.integrator == Integrator::Implicit {
-                step_displacement + since_kick.step * since_kick.step * length(model.gravity)
+                {
+                    let fall = since_kick.step * since_kick.step * length(model.gravity);
+                    // a kick may also close a gap that is small beside the body
+                    let kicked = since_kick.reach.min(KICKED_GAP * feature_size(body));
+                    step_displacement + fall + kicked
+                }
             } else {
                 0.0
             },

@@ -22,6 +22,8 @@ pub(crate) struct SinceKick {
     pub duration: f64,
     /// The length of the step that the kick is in the middle of, or after (s).
     pub step: f64,
+    /// How far a kick may move a body within the rest of the step (m): known to implicit steps, which need the contacts that it may close.
+    pub reach: f64,
     /// How long a contact may have lasted that was not there at the latest kick (s).
     new_contact_limit: f64,
     /// Whether the flight began with the run: a contact may be older than it, and no kick comes before it.
@@ -29,13 +31,15 @@ pub(crate) struct SinceKick {
 }
 
 impl SinceKick {
-    /// At the kick of an implicit step of length `h` (s). Such steps may differ in length, so the state knows the time since the latest
-    /// kick.
-    pub fn at_implicit_kick(state: &State, h: f64) -> Self {
+    /// At the kick of an implicit step of length `h` (s), where no body is faster than `fastest` (m/s). Such steps may differ in length, so
+    /// the state knows the time since the latest kick.
+    pub fn at_implicit_kick(state: &State, h: f64, fastest: f64) -> Self {
         let is_first = state.time == 0.0;
         let duration = if is_first { 0.5 * h } else { state.since_kick + 0.5 * h };
         let time = state.time + 0.5 * h;
-        Self { time, duration, step: h, new_contact_limit: duration, is_first }
+        // a kick may pass on the velocity of another body
+        let reach = 0.5 * h * fastest;
+        Self { time, duration, step: h, reach, new_contact_limit: duration, is_first }
     }
 
     /// At the kick of the step that begins at `start` (s).
@@ -45,11 +49,16 @@ impl SinceKick {
             Integrator::Splitting | Integrator::Implicit => {
                 let duration = if is_first { 0.5 * h } else { h };
                 let time = start + 0.5 * h;
-                Self { time, duration, step: h, new_contact_limit: duration, is_first }
+                Self { time, duration, step: h, reach: 0.0, new_contact_limit: duration, is_first }
             }
-            Integrator::Euler => {
-                Self { time: start, duration: h, step: h, new_contact_limit: 0.0, is_first }
-            }
+            Integrator::Euler => Self {
+                time: start,
+                duration: h,
+                step: h,
+                reach: 0.0,
+                new_contact_limit: 0.0,
+                is_first,
+            },
         }
     }
 
@@ -62,10 +71,17 @@ impl SinceKick {
                 let is_implicit = model.integrator == Integrator::Implicit;
                 let since_kick = if is_implicit { state.since_kick } else { 0.5 * h };
                 let duration = if is_first { 0.0 } else { since_kick };
-                Self { time, duration, step: h, new_contact_limit: duration, is_first: false }
+                Self {
+                    time,
+                    duration,
+                    step: h,
+                    reach: 0.0,
+                    new_contact_limit: duration,
+                    is_first: false,
+                }
             }
             Integrator::Euler => {
-                Self { time, duration: h, step: h, new_contact_limit: 0.0, is_first }
+                Self { time, duration: h, step: h, reach: 0.0, new_contact_limit: 0.0, is_first }
             }
         }
     }
@@ -74,12 +90,12 @@ impl SinceKick {
     pub fn at_sub_step(time: f64, duration: f64) -> Self {
         let is_first = duration >= time;
         let duration = duration.min(time);
-        Self { time, duration, step: duration, new_contact_limit: duration, is_first }
+        Self { time, duration, step: duration, reach: 0.0, new_contact_limit: duration, is_first }
     }
 
     /// No time at all.
     pub fn none(time: f64) -> Self {
-        Self { time, duration: 0.0, step: 0.0, new_contact_limit: 0.0, is_first: false }
+        Self { time, duration: 0.0, step: 0.0, reach: 0.0, new_contact_limit: 0.0, is_first: false }
     }
 
     /// How long a contact without a spring has lasted (s): the time to get to its `depth` (m) at the speed `closing` (m/s), at

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::implicit_steps::ImplicitStep;
 use super::wall_contact::wall_contact_again;
 use crate::contact::{Outcome, SinceKick, gather};
 use crate::{Batch, BodyModel, Integrator, Model, Scratch, State, for_each_batch, parallel};
@@ -41,15 +42,15 @@ pub fn around_body_contact(
     scratch.body_contacts.store_friction_springs(&mut state.pair_springs);
 }
 
-/// The same with an implicit solution of the contact law, in place of forces, for a step of length `h` (s). Returns how it ended; `None`
+/// The same with an implicit solution of the contact law, in place of forces, for one part of a step. Returns how it ended; `None`
 /// where nothing can touch.
 pub(crate) fn around_implicit_contact(
     (model, state, scratch): (&Model, &mut State, &mut Scratch),
-    h: f64,
+    ImplicitStep { length, fastest }: ImplicitStep,
     before: impl Fn(&mut Batch) + Sync,
     after: impl Fn(&mut Batch) + Sync,
 ) -> Option<Outcome> {
-    let since_kick = SinceKick::at_implicit_kick(state, h);
+    let since_kick = SinceKick::at_implicit_kick(state, length, fastest);
     for_each_batch(model, state, scratch, |batch| {
         before(batch);
         let Batch { model, first, bodies, poses, .. } = batch;

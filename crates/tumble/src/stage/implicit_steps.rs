@@ -18,7 +18,8 @@ const AFTER_FAILURE: u32 = 2;
 /// The exponent shrinks after a part with less than this share of the largest number of iterations.
 const EASY: u32 = 8;
 
-/// It shrinks at most once in so many steps: bodies at rest between kicks of another distance have to come to rest again.
+/// It shrinks at most once in so many steps, after as many at the start: bodies at rest between kicks of another distance have to come to
+/// rest again.
 const STEPS_BETWEEN: u64 = 32;
 
 /// The parts of one step.
@@ -31,26 +32,36 @@ pub struct ImplicitSteps {
     size: u32,
 }
 
+/// One part of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct ImplicitStep {
+    /// Its length (s).
+    pub length: f64,
+    /// A bound on the speed of any point of a body that others touch, at its start (m/s).
+    pub fastest: f64,
+}
+
 impl ImplicitSteps {
     /// The parts of the step that begins with `state`.
     pub fn new(state: &State) -> Self {
         Self { start: state.time, done: 0, size: 0 }
     }
 
-    /// The length of the next part (s); sets the time of the state to its start.
-    pub fn next(&mut self, model: &Model, state: &mut State) -> Option<f64> {
+    /// The next part; sets the time of the state to its start.
+    pub fn next(&mut self, model: &Model, state: &mut State) -> Option<ImplicitStep> {
         let whole = 1 << MOST_DIVISIONS;
         if self.done == whole {
             return None;
         }
-        let divisions = state.step_divisions.max(divisions_for_speed(model, state));
+        let fastest = fastest(model, state);
+        let divisions = state.step_divisions.max(divisions_for_speed(model, fastest));
         self.size = whole >> divisions.min(MOST_DIVISIONS);
         while !self.done.is_multiple_of(self.size) {
             self.size /= 2;
         }
         let part = |size: u32| model.dt * (f64::from(size) / f64::from(whole));
         state.time = self.start + part(self.done);
-        Some(part(self.size))
+        Some(ImplicitStep { length: part(self.size), fastest })
     }
 
     /// Ends a part of length `h` (s), whose iterations ended with `outcome`; if they have not converged, the part
@@ -76,7 +87,7 @@ impl ImplicitSteps {
         if has_converged
             && iterations <= model.solver.max_iterations / EASY
             && self.done == self.size
-            && state.step.is_multiple_of(STEPS_BETWEEN)
+            && (state.step.is_multiple_of(STEPS_BETWEEN) || state.step < STEPS_BETWEEN)
         {
             state.step_divisions = state.step_divisions.saturating_sub(1);
         }
@@ -85,7 +96,7 @@ impl ImplicitSteps {
 
 /// The exponent for which no body moves farther in a part than the smallest radius of a sphere, or a quarter of the smallest thickness
 /// of a mesh.
-fn divisions_for_speed(model: &Model, state: &State) -> u32 {
+fn divisions_for_speed(model: &Model, fastest: f64) -> u32 {
     let reaches = model.bodies.iter().filter(|body| body.surface != Surface::None);
     let reaches = reaches.map(|body| match &body.signed_distance {
         Some(distance) => 0.25 * distance.thickness(),
@@ -95,12 +106,16 @@ fn divisions_for_speed(model: &Model, state: &State) -> u32 {
     if reach == f64::INFINITY {
         return 0;
     }
+    let path = model.dt * (fastest + model.gravity.length() * model.dt);
+    (0..MOST_DIVISIONS).find(|&n| path <= reach * f64::from(1u32 << n)).unwrap_or(MOST_DIVISIONS)
+}
+
+/// A bound on the speed (m/s) of any point of a body that others touch.
+fn fastest(model: &Model, state: &State) -> f64 {
     let bodies = model.bodies.iter().zip(&state.bodies);
     let speeds = bodies.filter(|(body, _)| body.surface != Surface::None).map(|(body, state)| {
         let omega = Kinematics::new(body, state).angular_velocity;
         state.velocity.length() + omega.length() * body.extent
     });
-    let speed = speeds.fold(0.0, f64::max) + model.gravity.length() * model.dt;
-    let path = model.dt * speed;
-    (0..MOST_DIVISIONS).find(|&n| path <= reach * f64::from(1u32 << n)).unwrap_or(MOST_DIVISIONS)
+    speeds.fold(0.0, f64::max)
 }

@@ -4,11 +4,12 @@
 //! it, and a the relative acceleration without contact. With s between 0 (the force in the middle of the step) and 1 (at its end),
 //! α = (1 + 3 s)/4, β = (1 − s)/4 and θ = (1 + s)/2, the impulse is
 //!
-//! > p = h max(0, −k [g + h (α u⁺ − β u⁻) + ½ a h² (α + β)] − c [θ (u⁺ + ½ a h) + (1 − θ) (u⁻ − ½ a h)]).
+//! > p = h max(0, −k [g + h (α u⁺ − β u⁻) + ⅛ (1 + 2 s) a h²] − c [θ (u⁺ + ½ a h) + (1 − θ) (u⁻ − ½ a h)]).
 //!
 //! At s = 0 the spring force is the mean of those at the beginning and the end of the step, so that a linear contact conserves energy;
-//! at s = 1 it is that at the next kick, which damps what the step does not resolve. Friction is the same with k_t, c_t and the
-//! stretch ξ, and ends at |p_t| = μ p.
+//! where it closes or opens in between, [`super::normal_impulse`] does so. At s = 1 it is that at the next kick, less ⅛ a h², which damps what
+//! the step does not resolve. At rest, u⁺ = −u⁻ = −½ a h, the bracket is the gap at the ends of the step for any s and h, so that bodies rest
+//! as deep as their weight asks for, in steps of any length. Friction is the same with k_t, c_t and the stretch ξ, and ends at |p_t| = μ p.
 //!
 //! The dashpot acts while the points touch: c is multiplied by the part of the step in which they do.
 //!
@@ -26,7 +27,7 @@ use crate::{ContactLaw, restitution};
 
 /// The number of steps that an impact must last for the law of springs and dashpots to give its rebound, and what a restitution that is
 /// asked for adds to it per damping ratio, for an error of 3 % at most.
-const RESOLVED: [f64; 2] = [2.0, 11.0];
+const RESOLVED: [f64; 2] = [2.0, 14.0];
 /// s is 0 below the first of these values of K h²/m, and 1 above the second.
 const RAMP: [f64; 2] = [4.0, 20.0];
 
@@ -261,20 +262,22 @@ impl<S: Simd> LaneConstants<S> {
         row.rebound = [f64::NEG_INFINITY; LANES];
         self.ends(simd, row, law, along);
 
-        let tangential = weights.law(h, spring, c_t);
+        self.first_stretch(simd, row, law, touching);
+        let tangential = weights.closing(simd, load(&law.closing)).law(h, spring, c_t);
         let (stretch, sliding) =
             (Vec3x8::load(simd, &law.stretch), Vec3x8::load(simd, &law.sliding));
-        let surface = Vec3x8::load(simd, &law.surface_velocity) * tangential.slope;
+        let slope = tangential.slope;
+        let surface = Vec3x8::load(simd, &law.surface_velocity) * slope;
         let offset = Vec3x8 {
             x: tangential.constant(stretch.x, sliding.x, across.x),
             y: tangential.constant(stretch.y, sliding.y, across.y),
             z: tangential.constant(stretch.z, sliding.z, across.z),
         };
         let mobility = self.tangential_mobility(simd, row, n);
-        row.tangential_slope = tangential.slope.into();
+        row.tangential_slope = slope.into();
         row.tangential_offset = (offset - surface).store();
         row.tangential_mobility = mobility.into();
-        row.tangential_factor = (splat(1.0) / (splat(1.0) + tangential.slope * mobility)).into();
+        row.tangential_factor = (splat(1.0) / (splat(1.0) + slope * mobility)).into();
     }
 
     /// What is needed where the contact closes or opens within the step: at s = 0 only, since the end of the step is what counts at s = 1.
@@ -291,6 +294,22 @@ impl<S: Simd> LaneConstants<S> {
         row.half_step = half.into();
         row.half_stiffness = (load(&law.stiffness) * half).into();
         row.half_damping = (load(&law.damping) * half).into();
+    }
+
+    /// The stretch of the friction spring of a contact that closes within the step, at the kick: what it will be at the end of the step less
+    /// what it gains until then, and so the opposite of a stretch if the contact closes after the kick.
+    #[inline(always)]
+    fn first_stretch(&self, simd: S, row: &Row, law: &mut RowLaw, touching: f64x8<S>) {
+        let load = |values: &[f64; LANES]| f64x8::simd_from(simd, *values);
+        let zero = f64x8::splat(simd, 0.0);
+        let is_new = load(&law.had_spring).simd_le(zero) & load(&law.friction_spring).simd_gt(zero);
+        let closes = is_new & load(&row.start_gap).simd_gt(zero) & touching.simd_gt(zero);
+        let closing = closes.select(touching, zero);
+        law.closing = closing.into();
+        let age = (touching - f64x8::splat(simd, 0.5)) * f64x8::splat(simd, self.step.length);
+        let first = Vec3x8::load(simd, &law.sliding) * age;
+        let stretch = Vec3x8::select(closes, first, Vec3x8::load(simd, &law.stretch));
+        law.stretch = stretch.store();
     }
 
     /// The part of the step in which the points touch, at the velocity before the kick.
@@ -354,13 +373,16 @@ fn tangents<S: Simd>(simd: S, n: Vec3x8<S>) -> (Vec3x8<S>, Vec3x8<S>) {
     )
 }
 
-/// α, β, θ and 1 − θ.
+/// α, β, θ, 1 − θ, the weight of the fall, and the share of the whole that counts: 1 except in [`Weights::closing`].
 #[derive(Clone, Copy)]
 pub(super) struct Weights<S: Simd> {
     after: f64x8<S>,
     before: f64x8<S>,
     damped_after: f64x8<S>,
     damped_before: f64x8<S>,
+    /// ⅛ (1 + 2 s).
+    fall: f64x8<S>,
+    share: f64x8<S>,
     half: f64x8<S>,
     zero: f64x8<S>,
 }
@@ -374,15 +396,31 @@ impl<S: Simd> Weights<S> {
             before: (splat(1.0) - s) * splat(0.25),
             damped_after: (splat(1.0) + s) * splat(0.5),
             damped_before: (splat(1.0) - s) * splat(0.5),
+            fall: (s * splat(2.0) + splat(1.0)) * splat(0.125),
+            share: splat(1.0),
             half: splat(0.5),
             zero: splat(0.0),
+        }
+    }
+
+    /// The weights of the friction spring of a contact that is closed for the last part φ > 0 of the step, where `part` is not 0. The mean of
+    /// its stretch over the step is ½ φ ξ₁, with the stretch ξ₁ at the end.
+    #[inline(always)]
+    pub fn closing(self, simd: S, part: f64x8<S>) -> Self {
+        let is_closing = part.simd_gt(self.zero);
+        Self {
+            after: is_closing.select(self.half, self.after),
+            before: is_closing.select(self.zero, self.before),
+            fall: is_closing.select(f64x8::splat(simd, 0.125), self.fall),
+            share: is_closing.select(part * self.half, self.share),
+            ..self
         }
     }
 
     /// The law of a spring k and a dashpot c in a step h.
     #[inline(always)]
     fn law(self, h: f64x8<S>, k: f64x8<S>, c: f64x8<S>) -> LinearLaw<S> {
-        let slope = h * (k * h * self.after + c * self.damped_after);
+        let slope = h * (k * h * self.share * self.after + c * self.damped_after);
         LinearLaw { weights: self, h, k, c, slope }
     }
 
@@ -395,8 +433,8 @@ impl<S: Simd> Weights<S> {
         (before, after): (f64x8<S>, f64x8<S>),
         acceleration: f64x8<S>,
     ) -> f64x8<S> {
-        gap + h * (self.after * after - self.before * before)
-            + self.half * acceleration * h * h * (self.after + self.before)
+        let path = h * (self.after * after - self.before * before);
+        self.share * (gap + path + self.fall * acceleration * h * h)
     }
 
     /// [`Self::gap`] of a vector.

@@ -194,16 +194,22 @@ impl<S: Simd> Contact<S> {
         let k = load(&law.friction_spring);
         let (impulse, stretch) =
             (Vec3x8::load(simd, &row.tangential_impulse), Vec3x8::load(simd, &law.stretch));
-        let mean = self.weights.stretch(self.h, stretch, (before, after), acceleration);
+        let one = f64x8::splat(simd, 1.0);
+        let closing = load(&law.closing);
+        let weights = self.weights.closing(simd, closing);
+        let mean = weights.stretch(self.h, stretch, (before, after), acceleration);
         // the spring is held at the limit of its own force, and the dashpot takes what remains of the impulse
         let limit = load(&row.friction) * load(&row.impulse) / self.h;
         let tension = k * mean.dot(mean).sqrt();
         let slips = tension.simd_gt(limit);
-        let one = f64x8::splat(simd, 1.0);
         let share = slips.select(limit / tension, one);
         let slipped = mean * (one - share);
         let spring = mean * (self.zero - k * share);
-        let held = stretch - slipped;
+        // of a contact that closes, the stretch at the end is 2/φ times the mean, and slips under 1/φ times the mean force
+        let is_closing = closing.simd_gt(self.zero);
+        let part = is_closing.select(closing, one);
+        let slip_path = slipped * is_closing.select((one + one) / part, one);
+        let held = stretch - slip_path;
         law.stretch = held.store();
 
         let work = self.zero - impulse.dot(before + after) * self.half;
@@ -223,7 +229,7 @@ impl<S: Simd> Contact<S> {
         let is_damped = load(&law.friction_damping).simd_gt(self.zero) & pushes;
         let dashpot = positive(simd, self.zero - by_dashpot.dot(u));
         let dashpot = is_damped.select(dashpot, self.zero);
-        let slip = self.zero - spring.dot(slipped);
+        let slip = (self.zero - spring.dot(slip_path)) / part;
         let slip = keeps.select(slip, positive(simd, work - stored - dashpot));
         [dashpot, slip, work - stored - dashpot - slip]
     }

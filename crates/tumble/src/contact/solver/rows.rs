@@ -84,6 +84,8 @@ pub(super) struct RowLaw {
     pub damping: [f64; LANES],
     pub friction_spring: [f64; LANES],
     pub friction_damping: [f64; LANES],
+    /// The part of the step in which a contact is closed that closes within it; 0 for others.
+    pub closing: [f64; LANES],
     /// Stretch of the friction spring at the kick (m).
     pub stretch: Columns,
     /// Velocity of the surface of the first body along itself, less that of the second (m/s).
