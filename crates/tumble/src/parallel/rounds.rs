@@ -127,7 +127,7 @@ mod tests {
         let work = |round: usize, job: usize| {
             let all = [0..3, 3..10, 10..11, 11..30];
             let own = all.iter().position(|range| range.contains(&job)).unwrap();
-            let other = if round % 2 == 0 { own.checked_sub(1) } else { Some(own + 1) };
+            let other = if round.is_multiple_of(2) { own.checked_sub(1) } else { Some(own + 1) };
             let input =
                 other.and_then(|other| all.get(other)).map_or(1, |range| sum(range.clone()));
             let own = values[job].load(Ordering::Relaxed);
@@ -143,7 +143,6 @@ mod tests {
             .build()
             .unwrap()
             .install(|| rounds.run(threads));
-        drop(rounds);
         (values.into_iter().map(AtomicU64::into_inner).collect(), last.into_inner().unwrap())
     }
 
