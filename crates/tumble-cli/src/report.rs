@@ -94,9 +94,10 @@ fn integrator(s: &Summary) -> String {
 fn solver(s: &Summary) -> Option<String> {
     let solver = s.solver.as_ref()?;
     let per_step = solver.iterations as f64 / s.steps.max(1) as f64;
-    let lost = number(solver.energy_numerical);
+    let lost = if solver.energy_numerical < 0.0 { "gained by" } else { "lost to" };
+    let energy = number(solver.energy_numerical.abs());
     let iterations = number(per_step);
-    Some(format!("{iterations} iterations per step, {lost} J lost to the implicit solution"))
+    Some(format!("{iterations} iterations per step, {energy} J {lost} the implicit solution"))
 }
 
 /// All steps of the run and, if it was resumed, how many of them were taken now.
