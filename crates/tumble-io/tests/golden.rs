@@ -27,7 +27,7 @@ const GOLDEN: &[(&str, &str)] = &[
     ("cats", "47cad05658f056f6204b70e6aff3ba1b"),
     ("hopper", "cb5916e126d967ed4c2548b4a2ab8a54"),
     ("drum", "8cb11037f0b96ae0a57b714d24623953"),
-    ("heap", "3b55d85f33210c76f44f56f1755efc6e"),
+    ("heap", "47a5a78cb618b98f43822bc3de58b8f4"),
     ("conveyor", "2aff2732915d97a6eafe3639a7280c6c"),
 ];
 

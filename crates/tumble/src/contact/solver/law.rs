@@ -22,12 +22,14 @@ use glam::DVec3;
 use super::super::patch_damping::{DampingTimes, Patch};
 use super::bodies::{LaneInertia, LaneMotion, SolverBody, Velocities};
 use super::rows::{Pack, Row, RowLaw};
-use crate::lanes::{Columns, LANES, Vec3x8, positive, set};
+use crate::lanes::{Columns, LANES, Vec3x8, positive, set, vector};
 use crate::{ContactLaw, restitution};
 
 /// The number of steps that an impact must last for the law of springs and dashpots to give its rebound, and what a restitution that is
 /// asked for adds to it per damping ratio, for an error of 3 % at most.
 const RESOLVED: [f64; 2] = [2.0, 14.0];
+/// The slope of a law that lets nothing slide, times the mobility.
+const STIFF: f64 = 1e9;
 /// s is 0 below the first of these values of K h²/m, and 1 above the second.
 const RAMP: [f64; 2] = [4.0, 20.0];
 
@@ -537,6 +539,16 @@ fn set_rebounds<S: Simd>(
                 coefficients[lane] = restitution(damping_ratio[lane]);
             }
             row.rebound[lane] = -coefficients[lane] * row.approach[lane];
+            stick(row, law, lane);
         }
     }
+}
+
+/// The friction of an impact that the step does not resolve: it stops the sliding at once, within its limit. The spring would not have the time
+/// to do so.
+fn stick(row: &mut Row, law: &RowLaw, lane: usize) {
+    let slope = STIFF / row.tangential_mobility[lane];
+    row.tangential_slope[lane] = slope;
+    row.tangential_factor[lane] = 1.0 / (1.0 + STIFF);
+    set(&mut row.tangential_offset, lane, vector(&law.surface_velocity, lane) * -slope);
 }
