@@ -10,7 +10,7 @@ cat >"$page" <<'PAGE'
 # Benchmarks
 
 `docs/benchmarks.sh` generates this page. It runs `cargo bench`, `bench/bouncing/run.sh`, `bench/heap/run.sh` and `bench/big_steps/run.sh`.
-All times are from one machine. The ratios are more meaningful than the times: they compare candidates that took turns in
+The times of each section are from one machine. The ratios are more meaningful than the times: they compare candidates that took turns in
 the same run.
 
 The plain loop evaluates the basic system for every particle: its rotation, its velocity, gravity, drag, the springs of five walls, force and torque.
@@ -28,7 +28,7 @@ cargo bench --locked -p tumble-bench --bench speed >>"$page"
     printf '\n## Heap of clumps, compared with LAMMPS\n\n'
     printf 'Clumps of eight spheres fall into an open box, simulated on one core. [bench/README.md](../bench/README.md) describes the set-up.\n\n'
     TUMBLE=$PWD/target/release/tumble bench/heap/run.sh
-    printf '\n## Long steps\n\n'
+    printf '\n## Big steps, compared with LAMMPS, Rapier and MuJoCo\n\n'
     printf 'The heap of 1000 clumps with `integrator = "implicit"`, compared with `splitting` and with other programs. '
     printf '[bench/README.md](../bench/README.md) describes the set-up. '
     printf 'The heaps on two cores consist of 1, 8 and 100 copies of a heap of 1000 such clumps at rest. They are timed in turns; '

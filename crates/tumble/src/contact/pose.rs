@@ -35,8 +35,8 @@ pub(crate) struct BodyPose {
     pub reach: f64,
 }
 
-/// Gaps that a kick may close, where bodies that do not move are near each other, as a share of the size of a body. The whole path would cost
-/// a falling heap a fifth of its time.
+/// Gaps that a kick may close, where bodies that do not move are near each other, as a share of the size of a body. The whole path
+/// would add contacts to every falling heap.
 const KICKED_GAP: f64 = 0.01;
 
 /// Stands for a wall as the second body of a pair.
