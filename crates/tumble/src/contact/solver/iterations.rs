@@ -1,6 +1,6 @@
 //! The iterations: projected Gauss–Seidel, colour by colour, forwards and backwards in turn.
 
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
@@ -49,7 +49,7 @@ pub(super) fn iterate(rows: &Rows, bodies: &[Velocities], settings: SolverSettin
         all.is_below(settings.tolerance)
     };
     // round 0 applies, and the others iterate
-    let iterations = AtomicU32::new(0);
+    let (iterations, converged) = (AtomicU32::new(0), AtomicBool::new(false));
     let work = |round, block: usize| {
         let block = &mut *lock(&blocks[block]);
         dispatch!(Level::new(), simd => simd.vectorize(
@@ -58,11 +58,16 @@ pub(super) fn iterate(rows: &Rows, bodies: &[Velocities], settings: SolverSettin
         ));
     };
     let after = |round: usize| {
+        if round == 0 {
+            return false;
+        }
+        let is_done = has_converged();
         iterations.store(round as u32, Ordering::Relaxed);
-        round > 0 && (round >= settings.max_iterations as usize || has_converged())
+        converged.store(is_done, Ordering::Relaxed);
+        is_done || round >= settings.max_iterations as usize
     };
     Rounds::new(&rows.starts, work, after).run(blocks.len() / BLOCKS_PER_THREAD);
-    Outcome { iterations: iterations.into_inner(), has_converged: has_converged() }
+    Outcome { iterations: iterations.into_inner(), has_converged: converged.into_inner() }
 }
 
 /// A block is free when its phase begins, or another thread has panicked and its results will not be used.
