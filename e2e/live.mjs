@@ -127,13 +127,16 @@ async function speeds(page) {
   check('the speed is low', slow > 0.01 && slow < 0.1, `${slow} s/s`);
 }
 
-// runs at maximum speed until the body is at rest, so that the mouse can hit it
+// Runs at maximum speed until the body is shown at rest, so that the mouse can hit it. At that speed the page shows an
+// earlier frame than the latest one until it draws again, so the latest frame alone does not tell what the mouse hits.
 async function waitForRest(what, page) {
   await page.selectOption('#speed', 'null');
   const { time: from } = await lastFrame(page);
   await until(what, page, (then) => {
-    const { time: now, bodies } = tumble.app.recording.frames.at(-1);
-    return now > then + 3 && Math.hypot(...bodies.subarray(7, 13)) < 0.05;
+    const { player, recording } = tumble.app;
+    const isSlow = ({ bodies }) => Math.hypot(...bodies.subarray(7, 13)) < 0.05;
+    // the frame before the shown one too: one alone may be an apex
+    return player.time > then + 3 && recording.frames.slice(recording.indexAt(player.time) - 1).every(isSlow);
   }, from);
   await page.selectOption('#speed', '1');
 }
@@ -147,6 +150,12 @@ async function drag(page, by, method) {
   const [x, y] = await page.evaluate(() => tumble.project(0));
   await page.mouse.move(x, y);
   await page.mouse.down();
+  const hit = await page.evaluate(([px, py]) => {
+    const { mouseSpring, player, recording } = tumble.app;
+    const under = document.elementFromPoint(px, py);
+    return { attached: mouseSpring.attached !== null, pressed: [px, py], centre: tumble.project(0), under: under?.id || under?.tagName, shown: player.time, end: recording.end };
+  }, [x, y]);
+  check(`${method}: the pointer hits the body`, hit.attached, JSON.stringify(hit));
   await page.mouse.move(x + by[0], y + by[1], { steps: 8 });
   await until(`${method}: the body follows the pointer`, page, ([px, py, far]) => {
     const [bx, by] = tumble.project(0);
