@@ -48,7 +48,7 @@ function within(what, promise) {
 const screenshot = (page, name) => pictures && page.screenshot({ path: path.join(pictures, `${name}.png`) });
 const lastFrame = (page) => page.evaluate(() => {
   const { time, step, ledger } = tumble.app.recording.frames.at(-1);
-  return { time, step, total: ledger[7], residual: ledger[8] };
+  return { time, step, total: ledger[9], residual: ledger[10] };
 });
 const parameter = (page, key) => page.evaluate((wanted) => tumble.app.header.parameters.find(({ key: k }) => k === wanted).value, key);
 const slider = (page, key) => page.locator(`.parameter[title="${key}"] input`);

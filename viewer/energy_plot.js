@@ -6,10 +6,10 @@ import { LEDGER } from './palette.js';
 
 // indices into the ledger of a frame; the last two values are derived
 const GRAVITATIONAL = 1;
-const TOTAL = 7;
-const RESIDUAL = 8;
-const MOUSE_WORK = 9;
-const PRESCRIBED_WORK = 10;
+const TOTAL = 9;
+const RESIDUAL = 10;
+const MOUSE_WORK = 11;
+const PRESCRIBED_WORK = 12;
 // margins in CSS pixels
 const LEFT = 58;
 const RIGHT = 10;
@@ -247,7 +247,7 @@ export class EnergyPlot {
     };
     const parts = LEDGER.map((part, k) => (used[k] ? item(k, part.label, part.colour, part.note) : null)).filter(Boolean);
     const rest = [item(RESIDUAL, 'Residual (integrator error)', 'transparent', 'change of the total since the start, without mouse and edits')];
-    if (hasPrescribedWork) rest.push(item(PRESCRIBED_WORK, 'Prescribed motion', 'transparent', 'work done by prescribed bodies since the start; the total is the sum of the parts minus this'));
+    if (hasPrescribedWork) rest.push(item(PRESCRIBED_WORK, 'Work put in', 'transparent', 'work done by prescribed bodies, loads and motors since the start; the total is the sum of the parts minus this'));
     if (hasMouseWork) rest.push(item(MOUSE_WORK, 'Mouse and edits', 'transparent', 'energy added by dragging and by changed parameters since the start'));
     this.legend.replaceChildren(element('h2', {}, 'Energy'), ...parts, item(TOTAL, 'Total', 'var(--ink)'), ...rest);
     const last = this.player.recording.frames.at(-1);

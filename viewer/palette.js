@@ -15,6 +15,8 @@ export const LEDGER = [
   { name: 'dashpot', label: 'Dashpot', note: 'dissipated by dashpots', colour: '#cc79a7' },
   { name: 'slip', label: 'Slip', note: 'dissipated by slip', colour: '#d55e00' },
   { name: 'numerical', label: 'Numerical', note: 'lost by the implicit solution of the contact law; it may be negative while bodies slide', colour: '#785ef0' },
+  { name: 'spring', label: 'Joint springs', note: 'stored in the springs of joints', colour: '#6ec85a' },
+  { name: 'joint_friction', label: 'Joint friction', note: 'dissipated by friction, dampers and limits of joints', colour: '#966e50' },
 ];
 
 // colours of bodies: lighter variants of the palette

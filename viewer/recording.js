@@ -2,7 +2,7 @@
 
 import { slerp } from './math.js';
 
-const LEDGER_SIZE = 11; // doubles per frame: time, step, nine columns of the energy ledger
+const LEDGER_SIZE = 13; // doubles per frame: time, step, eleven columns of the energy ledger
 export const BODY_SIZE = 22; // floats per body
 
 // offset of each quantity in the floats of a body

@@ -28,7 +28,7 @@ use bytes::Bytes;
 /// The first bytes of every checkpoint; a transfer in text mode would change them.
 pub const MAGIC: [u8; 12] = *b"\x89TUMBLE\r\n\x1a\n\0";
 /// The version of the format that is written.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;
 /// The oldest version that is read: its bodies have no `position_compensation`.
 pub const OLDEST_VERSION: u32 = 3;
 /// Bytes before the first section.

@@ -226,7 +226,8 @@ fn read_energy(
         let problem = format!("has no row of t = {time} s; {RESUME_ADVICE}");
         return Err(if rows.is_truncated { truncated(rows) } else { rows.error(&problem) });
     };
-    let count = 9 + u8::from(columns.work) + u8::from(columns.numerical);
+    let count =
+        9 + u8::from(columns.work) + u8::from(columns.numerical) + 3 * u8::from(columns.joints);
     let row = parse_energy(&row, columns)
         .ok_or_else(|| rows.error(&format!("is not a row of {count} numbers")))?;
     if row.time != time {

@@ -2,7 +2,7 @@
 
 use tumble::{Prescribed, World};
 use tumble_io::on_one_line;
-use tumble_io::scene::{BodyScene, MotionScene, Scene};
+use tumble_io::scene::{BodyScene, JointScene, MotionScene, Scene};
 
 use crate::scene_edit::load;
 
@@ -16,6 +16,11 @@ use crate::scene_edit::load;
 pub fn to_toml(scene: &Scene, world: &World) -> Result<String, String> {
     let mut bodies = world.bodies();
     let mut saved = scene.clone();
+    let (model, state) = (world.model(), world.state());
+    let joints = model.joints.list.iter().enumerate();
+    let joints = joints.map(|(index, joint)| joint.description(&model.names, state, index));
+    saved.joints = joints.map(|joint| JointScene { joint, chain: None }).collect();
+    saved.loads = scene.loads.iter().map(|load| load.clone().from_time(world.time())).collect();
     saved.bodies = Vec::with_capacity(world.body_count());
     for body in &scene.bodies {
         for name in body.names() {
@@ -28,9 +33,13 @@ pub fn to_toml(scene: &Scene, world: &World) -> Result<String, String> {
                 position: Some(state.position()),
                 orientation: state.orientation(),
                 // of a prescribed body the scene holds the constant part; an oscillation is added to it
-                initial_velocity: if is_free { state.velocity() } else { body.initial_velocity },
+                initial_velocity: if is_free {
+                    Some(state.velocity())
+                } else {
+                    body.initial_velocity
+                },
                 initial_angular_velocity: if is_free {
-                    state.angular_velocity()
+                    Some(state.angular_velocity())
                 } else {
                     body.initial_angular_velocity
                 },

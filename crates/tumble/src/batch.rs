@@ -30,6 +30,8 @@ pub struct Batch<'a> {
     pub next_springs: &'a mut [Vec<FrictionSpring>],
     /// Poses of the bodies for contact between bodies; empty before the first neighbour lists are built.
     pub(crate) poses: &'a mut [BodyPose],
+    /// All bodies at the beginning of the step, where there are joints; else empty or out of date.
+    pub(crate) start: &'a [BodyState],
     /// Buffers, one for each [`CHUNK`] of bodies.
     pub(crate) workspaces: &'a mut [Workspace],
     /// Results of contact between bodies.
@@ -110,8 +112,9 @@ pub fn for_each_batch(
         return;
     }
     scratch.resize(state.bodies.len());
-    let Scratch { may_touch, forces, springs: next_springs, workspaces, body_contacts, .. } =
-        scratch;
+    let Scratch {
+        may_touch, forces, springs: next_springs, workspaces, body_contacts, before, ..
+    } = scratch;
     // a single batch adds to the totals of the run directly
     let is_single = workspaces.len() < 2;
     for workspace in &mut *workspaces {
@@ -128,6 +131,7 @@ pub fn for_each_batch(
         forces,
         next_springs,
         poses,
+        start: &before.bodies,
         workspaces,
         contact_results,
     };

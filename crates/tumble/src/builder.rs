@@ -5,6 +5,7 @@ mod body_model;
 mod checks;
 mod description;
 mod initial_state;
+mod joints;
 mod model_cache;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
@@ -15,7 +16,7 @@ use self::body_model::Shared;
 use self::checks::{behind_walls, duplicate_names, overlaps};
 use crate::stage::DIVISIONS_AT_START;
 use crate::{
-    BuildError, BuildErrors, Integrator, MaterialOverride, Model, Overlaps, State, Surface,
+    BuildError, BuildErrors, Integrator, Joints, Loads, MaterialOverride, Model, Overlaps, State, Surface,
     WallPlane, World, critical_dt,
 };
 
@@ -48,9 +49,12 @@ impl WorldBuilder {
             walls: self.walls.iter().map(|(wall, _)| *wall).collect(),
             wall_gap: smallest_gap(&self.walls),
             has_body_contact: self.bodies.iter().any(|body| body.surface != Surface::None)
-                || (self.integrator == Integrator::Implicit && !self.walls.is_empty()),
+                || (self.integrator == Integrator::Implicit && !self.walls.is_empty())
+                || self.has_joints_or_loads(),
             bodies: Vec::with_capacity(self.bodies.len()),
             names: Vec::with_capacity(self.bodies.len()),
+            joints: Joints::default(),
+            loads: Loads::default(),
         };
         let (mut state, mut shared) = (State::default(), Shared::default());
         if self.integrator == Integrator::Implicit {
@@ -69,10 +73,12 @@ impl WorldBuilder {
             }
         }
         errors.extend(duplicate_names(&model));
+        self.add_loads(&mut model, &mut errors);
         let has_contact = model.has_body_contact || !model.walls.is_empty();
         if errors.is_empty() && has_contact && self.overlaps == Overlaps::Push {
             crate::contact::initial_overlap::separate(&model, &mut state);
         }
+        self.add_joints(&mut model, &mut state, &mut errors);
         errors.extend(behind_walls(&model, &state, self.accept_start_in_walls));
         errors.extend(overlaps(&model, &state));
         // implicit steps are stable at any length

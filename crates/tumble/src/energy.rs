@@ -9,7 +9,7 @@ use crate::{Integrator, Model, State};
 pub struct Energy {
     /// Kinetic energy ½ M v² + ½ L·ω of all free bodies.
     pub kinetic: f64,
-    /// Potential energy −M g·x, zero at the origin.
+    /// Potential energy −M g·x, zero at the origin, and that of central gravity, zero at infinity.
     pub gravitational: f64,
     /// Stored in the springs of contacts.
     pub elastic: f64,
@@ -21,8 +21,14 @@ pub struct Energy {
     pub slip: f64,
     /// Total loss to the implicit solution of the contact law, beyond dashpots and slip; negative where it adds energy.
     pub numerical: f64,
-    /// Total work done by bodies with prescribed motion.
+    /// Total work done by bodies with prescribed motion, and by loads.
     pub work: f64,
+    /// Stored in the springs of joints.
+    pub spring: f64,
+    /// Total work done by the motors of joints.
+    pub motor: f64,
+    /// Total loss to friction, dampers and limits of joints.
+    pub joint_friction: f64,
 }
 
 impl Energy {
@@ -39,6 +45,9 @@ impl Energy {
             slip: state.totals.slip,
             numerical: state.totals.numerical,
             work: state.totals.work,
+            motor: state.totals.motor,
+            joint_friction: state.totals.joint_friction,
+            spring: crate::joint::spring_energy(model, state),
             ..Self::default()
         };
         for (index, body) in model.bodies.iter().enumerate() {
@@ -56,13 +65,15 @@ impl Energy {
             }
         }
         energy.elastic += contacts.elastic_energy(model, state);
+        energy.gravitational += model.loads.energy(model, state);
         energy
     }
 
-    /// The sum of all terms minus the work. It is constant up to the error of the integrator.
+    /// The sum of all terms minus the work of prescribed motions, loads and motors. It is constant up to the error of the integrator.
     pub fn total(&self) -> f64 {
         self.kinetic + self.gravitational + self.elastic + self.drag + self.dashpot + self.slip
             - self.work
             + self.numerical
+            + (self.spring + self.joint_friction - self.motor)
     }
 }

@@ -70,6 +70,28 @@ pub enum BuildError {
         /// The penetration depth (m).
         depth: f64,
     },
+    /// A quantity of a joint has an impossible value.
+    Joint {
+        /// Name of the joint.
+        joint: String,
+        /// The quantity's name, as in scene files.
+        quantity: &'static str,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A quantity of a load has an impossible value.
+    Load {
+        /// Index of the load; those of functions follow.
+        load: usize,
+        /// The quantity's name, as in scene files.
+        quantity: &'static str,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        allowed: &'static str,
+    },
     /// Two bodies have the same name.
     SameName {
         /// The name.
@@ -85,6 +107,12 @@ impl std::fmt::Display for BuildError {
             }
             Self::Body { body, quantity, value, allowed } => {
                 write!(f, "body \"{body}\": `{quantity}` is {value}, but must be {allowed}")
+            }
+            Self::Joint { joint, quantity, value, allowed } => {
+                write!(f, "joint \"{joint}\": `{quantity}` is {value}, but must be {allowed}")
+            }
+            Self::Load { load, quantity, value, allowed } => {
+                write!(f, "load {load}: `{quantity}` is {value}, but must be {allowed}")
             }
             Self::Outside { body, normal: [x, y, z], depth } => write!(
                 f,
@@ -146,7 +174,7 @@ pub struct StepError {
     pub step: u64,
     /// Time at the end of the step (s).
     pub time: f64,
-    /// Name of the body.
+    /// Name of the body, or of the joint.
     pub body: String,
     /// Index of the particle, if the error concerns one.
     pub particle: Option<usize>,
@@ -163,11 +191,23 @@ pub struct StepError {
     pub body_depth: Option<Box<BodyDepth>>,
 }
 
+impl StepError {
+    /// The quantity of a joint whose constraints cannot be kept.
+    pub const CONSTRAINT: &'static str = "constraint";
+}
+
 impl std::fmt::Display for StepError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { step, time, body, particle, quantity, value, other, dt, body_depth } = self;
         if let Some(depth) = body_depth {
             return write!(f, "the simulation was stopped at step {step} (t = {time} s): {depth}");
+        }
+        if *quantity == StepError::CONSTRAINT {
+            return write!(
+                f,
+                "the simulation was stopped at step {step} (t = {time} s): the constraints of joint \"{body}\" cannot be kept, they are \
+                 off by {value:.1e}; try a smaller `dt`"
+            );
         }
         let whose = match particle {
             Some(particle) => format!("particle {particle} of body \"{body}\""),

@@ -10,7 +10,7 @@ impl State {
     /// The state is hashed as little-endian numbers: step, time, then for each body position, `position_compensation`, velocity,
     /// orientation (w, x, y, z), `orientation_compensation`, angular momentum, `energy_excess` and friction springs, then
     /// the friction springs between bodies and their impulses, then the totals (with its work unless that is zero, and with those of
-    /// the implicit solver if it ran). Two states with
+    /// the implicit solver if it ran), then coordinate and forces of each joint, and the totals of joints if there are any. Two states with
     /// equal hashes are equal bit for bit.
     pub fn hash(&self) -> String {
         let mut hasher = Sha256::new();
@@ -57,6 +57,13 @@ impl State {
             put(totals.numerical);
             put(f64::from_bits(totals.iterations));
             put(f64::from_bits(totals.not_converged));
+        }
+        for joint in &self.joints {
+            put(joint.coordinate);
+            joint.force.into_iter().for_each(&mut put);
+        }
+        if !self.joints.is_empty() {
+            [totals.motor, totals.joint_friction].into_iter().for_each(&mut put);
         }
         hasher.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }

@@ -47,8 +47,10 @@ mod energy;
 mod error;
 mod flight;
 mod hash;
+mod joint;
 mod kinematics;
 mod lanes;
+mod load;
 mod material;
 mod model;
 mod motion;
@@ -80,6 +82,8 @@ pub use energy::Energy;
 pub use error::{BuildError, BuildErrors, StepError};
 pub use flight::DragModes;
 pub use glam::{DMat3, DQuat, DVec3};
+pub use joint::{Joint, JointKind, JointModel, Joints, Motor};
+pub use load::{CentralGravity, ForceFunction, Load, LoadAxes, LoadCourse, Loads};
 pub use material::{ContactLaw, Damping, Material, MaterialOverride, damping_ratio, restitution};
 pub use model::{BodyModel, Integrator, Model, SolverSettings};
 pub use motion::{Motion, Oscillation, Prescribed};
@@ -95,10 +99,10 @@ pub use shape::{
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::MouseSpring;
 pub use state::{
-    BodyState, ContactImpulse, ContactKind, FrictionSpring, PairSpring, RunTotals, State,
+    BodyState, ContactImpulse, ContactKind, FrictionSpring, JointState, PairSpring, RunTotals, State,
 };
 pub use static_load::{SoftSprings, StaticLoad, static_loads};
 pub use surface::{Overlaps, Surface};
 pub use wall::{WallBox, WallPlane};
-pub use world::{BodyView, World};
+pub use world::{BodyView, JointView, World};
 pub use wrench::{BodyForces, Wrench};

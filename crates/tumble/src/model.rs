@@ -8,7 +8,7 @@ use crate::flight::DragModes;
 use crate::shape::Shape;
 use crate::wall::WallPlane;
 use crate::{
-    BodyState, ContactLaw, ContactPoints, Motion, PairMaterial, Particles, SignedDistance, Surface,
+    BodyState, ContactLaw, ContactPoints, Joints, Loads, Motion, PairMaterial, Particles, SignedDistance, Surface,
 };
 
 /// The time integrator.
@@ -81,12 +81,17 @@ pub struct Model {
     pub walls: Vec<WallPlane>,
     /// The smallest distance between two opposite walls (m).
     pub wall_gap: Option<f64>,
-    /// Whether any body has a surface for contact with other bodies, or all contacts are solved together.
+    /// Whether bodies act on each other within a step: any has a surface for contact with other bodies, all contacts are solved together,
+    /// or there are joints or loads.
     pub has_body_contact: bool,
     /// One entry per body. Identical bodies share an entry, which improves the use of caches.
     pub bodies: Vec<Arc<BodyModel>>,
     /// The names of the bodies.
     pub names: Vec<String>,
+    /// The joints.
+    pub joints: Joints,
+    /// The loads.
+    pub loads: Loads,
 }
 
 /// The constant data of a body, shared by identical bodies.
@@ -122,6 +127,13 @@ pub struct BodyModel {
     pub contact_points: Option<Arc<ContactPoints>>,
     /// How the body moves.
     pub motion: Motion,
+}
+
+impl Model {
+    /// Whether there are joints or loads.
+    pub(crate) fn has_joints_or_loads(&self) -> bool {
+        !self.joints.is_empty() || !self.loads.is_empty()
+    }
 }
 
 impl BodyModel {

@@ -125,6 +125,11 @@ impl State {
             check_springs(body, name, springs)?;
         }
         check_pair_springs(model, &self.pair_springs)?;
+        let joints_ok = self.joints.len() == model.joints.list.len()
+            && self.joints.iter().all(|joint| {
+                joint.coordinate.is_finite() && joint.force.iter().all(|force| force.is_finite())
+            });
+        check_values("", &[("joints", joints_ok)])?;
         self.check_impulses(model)?;
         let is_valid = (0.0..=model.dt).contains(&self.since_kick);
         let divisions_ok = self.step_divisions <= crate::stage::MOST_DIVISIONS;
@@ -136,6 +141,8 @@ impl State {
             ("slip", totals.slip.is_finite()),
             ("work", totals.work.is_finite()),
             ("numerical", totals.numerical.is_finite()),
+            ("motor", totals.motor.is_finite()),
+            ("joint_friction", totals.joint_friction.is_finite()),
             ("max_depth", totals.max_depth.is_finite()),
         ];
         check_values("", &values)

@@ -1,6 +1,7 @@
 //! Buffers that a step reuses.
 
 use crate::contact::{BodyContacts, Solver};
+use crate::joint::JointWork;
 use crate::parallel::CHUNK;
 use crate::workspace::Workspace;
 use crate::{BodyForces, FrictionSpring, State};
@@ -18,10 +19,12 @@ pub struct Scratch {
     pub(crate) workspaces: Vec<Workspace>,
     /// Contacts between bodies, and of spheres with walls.
     pub(crate) body_contacts: BodyContacts,
-    /// The state before a part of an implicit step, which may have to be repeated.
+    /// The state before a part of an implicit step, which may have to be repeated, or before a step with joints.
     pub(crate) before: State,
     /// The implicit solver.
     pub(crate) solver: Solver,
+    /// The joints.
+    pub(crate) joints: JointWork,
 }
 
 impl Scratch {

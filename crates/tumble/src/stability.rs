@@ -35,12 +35,13 @@ const CLOSE_PACKING: f64 = 4.0;
 /// damps at a rate that is lower by √(n/N).
 pub fn critical_dt(model: &Model) -> Option<CriticalStep> {
     let free = model.bodies.iter().zip(&model.names).filter(|(body, _)| body.is_free());
-    let steps = free.map(|(body, name)| (critical_dt_of(model, body), name));
+    let has_surfaces = model.bodies.iter().any(|body| body.surface != Surface::None);
+    let steps = free.map(|(body, name)| (critical_dt_of(model, body, has_surfaces), name));
     let (dt, name) = steps.min_by(|a, b| a.0.total_cmp(&b.0))?;
     dt.is_finite().then(|| CriticalStep { dt, body: name.clone() })
 }
 
-fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
+fn critical_dt_of(model: &Model, body: &BodyModel, has_surfaces: bool) -> f64 {
     let per_mass = match (body.shape.fastest_contact(), &body.drag_modes) {
         (Some(fastest), _) => fastest / body.mass,
         (None, Some(modes)) => modes.fastest(),
@@ -71,7 +72,7 @@ fn critical_dt_of(model: &Model, body: &BodyModel) -> f64 {
     };
     // two identical bodies with all particles in contact
     let law = body.pair_material.law(&body.pair_material);
-    let meets = if model.has_body_contact { 2.0 * per_mass * neighbours } else { 0.0 };
+    let meets = if has_surfaces { 2.0 * per_mass * neighbours } else { 0.0 };
     let between = |[normal, tangential]: [f64; 2]| meets * normal.max(tangential);
     let square = at_walls(&springs).max(between(springs(&law)));
     // more points in a patch share its dashpot, which grows with the root of their number

@@ -23,6 +23,8 @@ pub struct State {
     pub since_kick: f64,
     /// Such steps are divided into 2 to the power of this.
     pub step_divisions: u32,
+    /// One entry per joint.
+    pub joints: Vec<JointState>,
     /// Accumulated losses and extremes.
     pub totals: RunTotals,
 }
@@ -37,6 +39,7 @@ impl State {
         self.springs.clone_from(&other.springs);
         self.pair_springs.clone_from(&other.pair_springs);
         self.pair_impulses.clone_from(&other.pair_impulses);
+        self.joints.clone_from(&other.joints);
     }
 }
 
@@ -137,6 +140,17 @@ pub struct ContactImpulse {
     pub tangential: DVec3,
 }
 
+/// The state of one joint.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JointState {
+    /// Its coordinate: the angle of a hinge, counted beyond a turn (rad), the displacement of a slider, or the distance of the points of
+    /// a rod, rope or spring less that at the start (m); else 0.
+    pub coordinate: f64,
+    /// The mean forces and torques of its constraints, and of a limit, in the latest flight (N, N·m): what the next one begins its
+    /// iterations with.
+    pub force: [f64; 6],
+}
+
 /// The sort key of a pair: the first body, walls before other bodies, the second body or wall, the kind.
 pub(crate) type PairOrder = (u32, bool, u32, ContactKind);
 
@@ -168,8 +182,12 @@ pub struct RunTotals {
     pub dashpot: f64,
     /// Energy lost to frictional slip (J).
     pub slip: f64,
-    /// Work done by bodies with prescribed motion on other bodies (J).
+    /// Work done by bodies with prescribed motion on other bodies, and by loads (J).
     pub work: f64,
+    /// Work done by the motors of joints (J).
+    pub motor: f64,
+    /// Energy lost to friction, dampers and limits of joints (J).
+    pub joint_friction: f64,
     /// The largest penetration depth so far (m).
     pub max_depth: f64,
     /// The number of kicks by contact forces, a measure of the cost of contact.
@@ -185,7 +203,7 @@ pub struct RunTotals {
 impl RunTotals {
     /// The sum of all losses (J).
     pub fn lost(&self) -> f64 {
-        self.drag + self.dashpot + self.slip + self.numerical
+        self.drag + self.dashpot + self.slip + self.numerical + self.joint_friction
     }
 }
 
@@ -195,6 +213,8 @@ impl std::ops::AddAssign for RunTotals {
         self.dashpot += more.dashpot;
         self.slip += more.slip;
         self.work += more.work;
+        self.motor += more.motor;
+        self.joint_friction += more.joint_friction;
         self.max_depth = self.max_depth.max(more.max_depth);
         self.evaluations += more.evaluations;
         self.numerical += more.numerical;

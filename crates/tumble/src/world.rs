@@ -146,6 +146,34 @@ impl World {
         self.scratch.forces.get(index).map_or_else(Wrench::default, BodyForces::contact)
     }
 
+    /// The number of joints.
+    pub fn joint_count(&self) -> usize {
+        self.model.joints.list.len()
+    }
+
+    /// One joint, by its index in the order in which joints were added.
+    ///
+    /// # Panics
+    /// If `index` is not below [`World::joint_count`].
+    pub fn joint(&self, index: usize) -> JointView {
+        let scale = 1.0 / self.model.dt;
+        let impulse = self.scratch.joints.step_impulses.get(index).copied().unwrap_or_default();
+        let [coordinate, rate] = crate::joint::coordinate_and_rate(&self.model, &self.state, index);
+        let wrench = Wrench { force: impulse.force * scale, torque: impulse.torque * scale };
+        JointView { wrench, coordinate, rate }
+    }
+
+    /// The number of constraints of joints that follow from others, in the present pose. How they share forces is not determined; those of
+    /// the later ones are 0.
+    pub fn redundant_constraints(&self) -> usize {
+        crate::joint::redundant_constraints(&self.model, &self.state)
+    }
+
+    /// The largest error of the constraints of all joints now (m, or rad for directions).
+    pub fn constraint_error(&self) -> f64 {
+        crate::joint::constraint_error(&self.model, &self.state)
+    }
+
     /// The largest penetration depths now.
     pub fn penetration_depths(&self) -> PenetrationDepths {
         PenetrationDepths::from_contacts(
@@ -168,6 +196,19 @@ impl World {
     }
 }
 
+/// What a joint did in the latest step, and where it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct JointView {
+    /// The force on the first body (N) and the torque about the point of the joint (N·m), world axes: means over the step. They are those of
+    /// constraints, springs, dampers, motors, friction and limits together.
+    pub wrench: Wrench,
+    /// The angle of a hinge from the start, counted beyond a turn (rad), the displacement of a slider from the start (m), the distance of
+    /// the points of a rod, rope or spring (m), the angle of rotation of a ball joint from the start (rad, at most π), 0 of a weld.
+    pub coordinate: f64,
+    /// Its rate (rad/s or m/s).
+    pub rate: f64,
+}
+
 /// Read access to one body.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyView<'a> {
@@ -177,6 +218,14 @@ pub struct BodyView<'a> {
 }
 
 impl<'a> BodyView<'a> {
+    pub(crate) fn new(name: &'a str, model: &'a BodyModel, state: &'a BodyState) -> Self {
+        Self { name, model, state }
+    }
+
+    pub(crate) fn state(&self) -> &'a BodyState {
+        self.state
+    }
+
     /// The name.
     pub fn name(&self) -> &'a str {
         self.name

@@ -45,6 +45,10 @@ pub struct BodyForces {
     pub dashpot: Wrench,
     /// Tangential springs of contacts with walls.
     pub friction: Wrench,
+    /// Loads.
+    pub load: Wrench,
+    /// Joints in the kick.
+    pub joint: Wrench,
     /// Energy that slipping and released friction springs lose in this evaluation (J).
     pub slip_loss: f64,
     /// Power that moving surfaces (conveyor belts) put in through the contacts of this body (W).
@@ -59,7 +63,22 @@ impl BodyForces {
     /// Lines 3 and 4 of the basic system: total force F = Σ fᵢ and torque τ = Σ (xᵢ − x) × fᵢ, as the sum over causes. The stages have
     /// summed over the particles.
     pub fn total(&self) -> Wrench {
-        self.gravity + self.drag + self.contact()
+        self.gravity + self.drag + self.kick()
+    }
+
+    /// The wrench of the kick: contact, loads and joints.
+    pub fn kick(&self) -> Wrench {
+        if self.has_others() { self.contact() + (self.load + self.joint) } else { self.contact() }
+    }
+
+    /// The wrench of contact and joints.
+    pub(crate) fn of_others(&self) -> Wrench {
+        if self.has_others() { self.contact() + self.joint } else { self.contact() }
+    }
+
+    /// Whether loads or joints act.
+    pub(crate) fn has_others(&self) -> bool {
+        self.load != Wrench::default() || self.joint != Wrench::default()
     }
 
     /// The contact wrench: springs, dashpots and friction of all contacts with walls and bodies.

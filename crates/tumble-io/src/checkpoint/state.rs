@@ -10,11 +10,12 @@
 //!   contact (one byte), particle, other, stretch;
 //! - number of impulses of these contacts, and for each: normal, tangential (absent before version 5);
 //! - time since the latest kick, and the exponent of the division of steps (likewise);
-//! - the totals (the last three are absent before version 5).
+//! - the totals (the last three are absent before version 5);
+//! - number of joints, and for each: coordinate, six forces; their two totals (absent before version 6).
 
 use tumble::{
-    BodyState, ContactImpulse, ContactKind, DQuat, DVec3, FrictionSpring, PairSpring, RunTotals,
-    State,
+    BodyState, ContactImpulse, ContactKind, DQuat, DVec3, FrictionSpring, JointState, PairSpring,
+    RunTotals, State,
 };
 
 use super::OLDEST_VERSION;
@@ -30,8 +31,12 @@ const SPRING_LENGTH: usize = 4 + 4 + 6 * 8;
 const PAIR_SPRING_LENGTH: usize = 4 * 4 + 1 + 3 * 8;
 /// Bytes of an impulse.
 const IMPULSE_LENGTH: usize = 4 * 8;
+/// Bytes of a joint.
+const JOINT_LENGTH: usize = 7 * 8;
 /// The first version with impulses.
 const FIRST_WITH_IMPULSES: u32 = 5;
+/// The first version with joints.
+const FIRST_WITH_JOINTS: u32 = 6;
 /// The kinds of contact, indexed by their byte.
 const CONTACT_KINDS: [ContactKind; 4] = [
     ContactKind::SphereWall,
@@ -52,6 +57,7 @@ pub(super) fn encode(state: &State) -> Vec<u8> {
         pair_impulses,
         since_kick,
         step_divisions,
+        joints,
         totals,
     } = state;
     let spring_count: usize = springs.iter().map(Vec::len).sum();
@@ -113,6 +119,12 @@ pub(super) fn encode(state: &State) -> Vec<u8> {
     push_numbers(&mut out, [numerical]);
     out.extend(iterations.to_le_bytes());
     out.extend(not_converged.to_le_bytes());
+    out.extend((joints.len() as u64).to_le_bytes());
+    for JointState { coordinate, force } in joints {
+        push_numbers(&mut out, [*coordinate]);
+        push_numbers(&mut out, *force);
+    }
+    push_numbers(&mut out, [totals.motor, totals.joint_friction]);
     out
 }
 
@@ -145,6 +157,11 @@ pub(super) fn decode(mut bytes: Bytes, version: u32) -> Option<State> {
         totals.numerical = bytes.f64()?;
         (totals.iterations, totals.not_converged) = (bytes.u64()?, bytes.u64()?);
     }
+    let has_joints = version >= FIRST_WITH_JOINTS;
+    let joints = if has_joints { joints(&mut bytes)? } else { Vec::new() };
+    if has_joints {
+        (totals.motor, totals.joint_friction) = (bytes.f64()?, bytes.f64()?);
+    }
     let state = State {
         step,
         time,
@@ -154,6 +171,7 @@ pub(super) fn decode(mut bytes: Bytes, version: u32) -> Option<State> {
         pair_impulses,
         since_kick,
         step_divisions,
+        joints,
         totals,
     };
     bytes.is_empty().then_some(state)
@@ -199,6 +217,19 @@ fn impulses(bytes: &mut Bytes) -> Option<Vec<ContactImpulse>> {
     let count = bytes.count(IMPULSE_LENGTH)?;
     let impulse = |_| Some(ContactImpulse { normal: bytes.f64()?, tangential: vector(bytes)? });
     (0..count).map(impulse).collect()
+}
+
+fn joints(bytes: &mut Bytes) -> Option<Vec<JointState>> {
+    let count = bytes.count(JOINT_LENGTH)?;
+    let joint = |_| {
+        let coordinate = bytes.f64()?;
+        let mut force = [0.0; 6];
+        for value in &mut force {
+            *value = bytes.f64()?;
+        }
+        Some(JointState { coordinate, force })
+    };
+    (0..count).map(joint).collect()
 }
 
 fn vector(bytes: &mut Bytes) -> Option<DVec3> {

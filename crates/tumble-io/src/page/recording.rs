@@ -43,15 +43,15 @@ impl BodyFrame {
     }
 }
 
-/// Size of the record of one frame (bytes): eleven `f64`, and 22 `f32` per body.
+/// Size of the record of one frame (bytes): thirteen `f64`, and 22 `f32` per body.
 pub fn record_size(body_count: usize) -> usize {
-    88 + 88 * body_count
+    104 + 88 * body_count
 }
 
 /// Appends the record of one frame to `out`.
 ///
 /// All numbers are little-endian. As `f64`: time, step, and the energies kinetic, gravitational,
-/// elastic, drag, dashpot, slip, numerical, total and residual. Then as `f32` for each body: position, orientation
+/// elastic, drag, dashpot, slip, numerical, spring, joint friction, total and residual. Then as `f32` for each body: position, orientation
 /// w x y z, velocity, angular velocity, angular momentum, contact force and contact torque.
 pub fn encode_frame(
     out: &mut Vec<u8>,
@@ -59,10 +59,10 @@ pub fn encode_frame(
     row: &EnergyRow,
     bodies: impl Iterator<Item = BodyFrame>,
 ) {
-    // the page computes the work as the sum of the parts minus the total
+    // the page computes the work, that of motors included, as the sum of the parts minus the total
     let EnergyRow { time, kinetic, gravitational, elastic, drag, .. } = *row;
-    let EnergyRow { dashpot, slip, numerical, work: _, total, residual, .. } = *row;
-    let losses = [drag, dashpot, slip, numerical];
+    let EnergyRow { dashpot, slip, numerical, spring, joint_friction, total, residual, .. } = *row;
+    let losses = [drag, dashpot, slip, numerical, spring, joint_friction];
     let ledger =
         [kinetic, gravitational, elastic].into_iter().chain(losses).chain([total, residual]);
     for number in [time, step as f64].into_iter().chain(ledger) {

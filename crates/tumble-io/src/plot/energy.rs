@@ -24,8 +24,14 @@ pub struct EnergyRow {
     pub slip: f64,
     /// Cumulative energy lost by the implicit solution of the contact law (J).
     pub numerical: f64,
-    /// Cumulative work done by bodies with prescribed motion (J).
+    /// Cumulative work done by bodies with prescribed motion, and by loads (J).
     pub work: f64,
+    /// Elastic energy of the springs of joints (J).
+    pub spring: f64,
+    /// Cumulative work done by motors (J).
+    pub motor: f64,
+    /// Cumulative energy lost to friction, dampers and limits of joints (J).
+    pub joint_friction: f64,
     /// Sum of energies and losses minus the work (J). It would be constant without numerical
     /// error.
     pub total: f64,
@@ -73,7 +79,7 @@ struct Series {
 const TOTAL: Series = Series { name: "total", colour: RGBColor(0, 0, 0), value: |row| row.total };
 const RESIDUAL: Series =
     Series { name: "residual", colour: RGBColor(90, 90, 90), value: |row| row.residual };
-const TERMS: [Series; 8] = [
+const TERMS: [Series; 11] = [
     Series { name: "kinetic", colour: RGBColor(0, 114, 178), value: |row| row.kinetic },
     Series { name: "gravitational", colour: RGBColor(230, 159, 0), value: |row| row.gravitational },
     Series { name: "elastic", colour: RGBColor(0, 158, 115), value: |row| row.elastic },
@@ -83,6 +89,13 @@ const TERMS: [Series; 8] = [
     Series { name: "numerical", colour: RGBColor(120, 94, 240), value: |row| row.numerical },
     // olive, distinct from the others
     Series { name: "work put in", colour: RGBColor(140, 130, 30), value: |row| row.work },
+    Series { name: "joint springs", colour: RGBColor(110, 200, 90), value: |row| row.spring },
+    Series { name: "motors", colour: RGBColor(170, 60, 60), value: |row| row.motor },
+    Series {
+        name: "lost in joints",
+        colour: RGBColor(150, 110, 80),
+        value: |row| row.joint_friction,
+    },
 ];
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;

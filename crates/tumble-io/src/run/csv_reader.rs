@@ -107,6 +107,12 @@ pub(crate) fn parse_energy(row: &str, columns: EnergyColumns) -> Option<EnergyRo
         Some((rest, value)) if is_there => Some((rest.len(), value.parse().ok()?)),
         _ => Some((row.len(), 0.0)),
     };
+    let (end, joint_friction) = last(row, columns.joints)?;
+    let row = &row[..end];
+    let (end, motor) = last(row, columns.joints)?;
+    let row = &row[..end];
+    let (end, spring) = last(row, columns.joints)?;
+    let row = &row[..end];
     let (end, work) = last(row, columns.work)?;
     let row = &row[..end];
     let (end, numerical) = last(row, columns.numerical)?;
@@ -123,6 +129,9 @@ pub(crate) fn parse_energy(row: &str, columns: EnergyColumns) -> Option<EnergyRo
         slip,
         numerical,
         work,
+        spring,
+        motor,
+        joint_friction,
         total,
         residual,
     })

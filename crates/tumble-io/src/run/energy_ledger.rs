@@ -19,18 +19,24 @@ pub struct EnergyColumns {
     pub numerical: bool,
     /// `work`, if [`Scene::does_work`].
     pub work: bool,
+    /// `spring`, `motor` and `joint_friction`, if there are joints.
+    pub joints: bool,
 }
 
 impl EnergyColumns {
     /// Those of the runs of a scene.
     pub fn new(scene: &Scene) -> Self {
         let numerical = scene.integrator == Integrator::Implicit;
-        Self { numerical, work: scene.does_work() }
+        Self { numerical, work: scene.does_work(), joints: !scene.joints.is_empty() }
     }
 
     /// The first line of `energy.csv`.
     pub fn header(self) -> String {
-        let names = [(self.numerical, ",numerical"), (self.work, ",work")];
+        let names = [
+            (self.numerical, ",numerical"),
+            (self.work, ",work"),
+            (self.joints, ",spring,motor,joint_friction"),
+        ];
         let names = names.into_iter().filter_map(|(is_there, name)| is_there.then_some(name));
         ENERGY_HEADER.to_owned() + &names.collect::<String>()
     }
@@ -48,6 +54,9 @@ pub fn energy_row(time: f64, energy: &Energy, energy_start: f64) -> EnergyRow {
         slip: energy.slip,
         numerical: energy.numerical,
         work: energy.work,
+        spring: energy.spring,
+        motor: energy.motor,
+        joint_friction: energy.joint_friction,
         total: energy.total(),
         residual: energy.total() - energy_start,
     }
@@ -62,7 +71,14 @@ pub(super) fn write_energy(
     let EnergyRow { kinetic, gravitational, elastic, drag, dashpot, slip, .. } = *row;
     let EnergyRow { time, numerical, work, total, residual, .. } = *row;
     let common = [kinetic, gravitational, elastic, drag, dashpot, slip, total, residual];
-    let others = [(columns.numerical, numerical), (columns.work, work)];
+    let EnergyRow { spring, motor, joint_friction, .. } = *row;
+    let others = [
+        (columns.numerical, numerical),
+        (columns.work, work),
+        (columns.joints, spring),
+        (columns.joints, motor),
+        (columns.joints, joint_friction),
+    ];
     let others = others.into_iter().filter_map(|(is_there, value)| is_there.then_some(value));
     let numbers: Vec<f64> = common.into_iter().chain(others).collect();
     write_row(out, (time, None), &numbers)

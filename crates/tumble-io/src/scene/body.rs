@@ -45,9 +45,10 @@ pub fn body(reader: Reader, index: usize) -> BodyScene {
         Some(name) => name.to_owned(),
         None => format!("body {index}"),
     };
-    let velocity = reader.vector("initial_velocity").unwrap_or(DVec3::ZERO);
-    let angular_velocity = reader.vector("initial_angular_velocity").unwrap_or(DVec3::ZERO);
+    let velocity = reader.vector("initial_velocity");
+    let angular_velocity = reader.vector("initial_angular_velocity");
     let starts = [("initial_velocity", velocity), ("initial_angular_velocity", angular_velocity)];
+    let starts = starts.map(|(key, start)| (key, start.unwrap_or(DVec3::ZERO)));
     let body = BodyScene {
         name,
         scale: reader.number("scale", Range::Positive).unwrap_or(1.0),

@@ -19,7 +19,7 @@ macro_rules! builtin {
 }
 
 /// All built-in scenes, in teaching order.
-pub const BUILTIN: [Builtin; 19] = builtin![
+pub const BUILTIN: [Builtin; 28] = builtin![
     "task1",
     "task2",
     "task1-cat",
@@ -39,6 +39,15 @@ pub const BUILTIN: [Builtin; 19] = builtin![
     "drum",
     "heap",
     "conveyor",
+    "pendulum",
+    "double_pendulum",
+    "gyroscope",
+    "kapitza",
+    "slider_crank",
+    "four_bar",
+    "cradle_strings",
+    "beads",
+    "trebuchet",
 ];
 
 /// The built-in scene of that name.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use tumble::{
-    DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Overlaps, Prescribed,
+    CentralGravity, DQuat, DVec3, Integrator, Joint, Load, MassModel, Material, MaterialOverride, Motion, Overlaps, Prescribed,
     Primitive, Sampling, SolverSettings, Surface, WallBox, WallPlane,
 };
 
@@ -44,6 +44,12 @@ pub struct Scene {
     pub walls: Vec<WallScene>,
     /// The bodies, before copies.
     pub bodies: Vec<BodyScene>,
+    /// The joints.
+    pub joints: Vec<JointScene>,
+    /// The loads.
+    pub loads: Vec<Load>,
+    /// Gravity of a mass at a fixed place.
+    pub central_gravity: Option<CentralGravity>,
     /// Output settings.
     pub output: OutputScene,
     /// Accept a time step above the critical one; set by the caller, not by the file.
@@ -87,10 +93,10 @@ pub struct BodyScene {
     pub position: Option<DVec3>,
     /// Orientation at the start.
     pub orientation: DQuat,
-    /// Velocity at the start (m/s).
-    pub initial_velocity: DVec3,
-    /// Angular velocity at the start, world axes (rad/s).
-    pub initial_angular_velocity: DVec3,
+    /// Velocity at the start (m/s); `None`: that of its joints, or 0.
+    pub initial_velocity: Option<DVec3>,
+    /// Angular velocity at the start, world axes (rad/s); likewise.
+    pub initial_angular_velocity: Option<DVec3>,
     /// Its own material.
     pub material: MaterialOverride,
     /// Its contact surface.
@@ -182,6 +188,33 @@ impl ShapeScene {
     }
 }
 
+/// One `[[joint]]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointScene {
+    /// The joint; its bodies and points are not given if it is a chain.
+    pub joint: Joint,
+    /// The name of a body whose copies are joined, each with the next one.
+    pub chain: Option<String>,
+}
+
+impl JointScene {
+    /// The joint, or those of the chain. `place` is where a body is at the start, by name (m); without it the joint is not made.
+    pub fn joints(&self, count: u64, place: impl Fn(&str) -> Option<DVec3>) -> Vec<Joint> {
+        let Some(chain) = &self.chain else { return vec![self.joint.clone()] };
+        let name = |index: u64| format!("{chain} {index}");
+        let own_name = self.joint.name.as_deref().unwrap_or_default();
+        let link = |index: u64| {
+            let names = [name(index), name(index + 1)];
+            let [from, to] = [place(&names[0])?, place(&names[1])?];
+            let middle = 0.5 * (from + to);
+            let at = if self.joint.kind.has_length() { [from, to] } else { [middle; 2] };
+            let joint_name = Some(format!("{own_name} {index}"));
+            Some(Joint { name: joint_name, between: names.map(Some), at, ..self.joint.clone() })
+        };
+        (0..count.saturating_sub(1)).filter_map(link).collect()
+    }
+}
+
 /// The key that gives the mass of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MassScene {
@@ -257,14 +290,19 @@ impl Default for OutputScene {
 }
 
 impl Scene {
-    /// Whether a body may do work: a prescribed motion or a surface velocity.
+    /// Whether a body may do work, by a prescribed motion or a surface velocity, or a load.
     pub fn does_work(&self) -> bool {
         let moves = |body: &BodyScene| match body.motion {
             MotionScene::Free => false,
             MotionScene::Fixed { surface_velocity } => surface_velocity != DVec3::ZERO,
             MotionScene::Prescribed(_) => true,
         };
-        self.bodies.iter().any(moves)
+        self.has_loads() || self.bodies.iter().any(moves)
+    }
+
+    /// Whether there are loads.
+    pub fn has_loads(&self) -> bool {
+        !self.loads.is_empty()
     }
 
     /// If there are several bodies, those that others pass through: they have no contact surface.

@@ -4,12 +4,12 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use tumble::{Body, BodyView, BuildError, DQuat, DVec3, World, WorldBuilder};
+use tumble::{Body, BodyView, BuildError, DQuat, DVec3, Joint, World, WorldBuilder};
 
 use super::body::MASS_KEYS;
 use super::builtin::builtin;
 use super::default_dt::{self, Unstable};
-use super::description::{BodyScene, Geometry, Scene};
+use super::description::{BodyScene, Copies, Geometry, Scene};
 use super::geometry::{self, ShapeAndMass};
 use super::place::{Place, Source};
 use super::problem::{Problem, SceneError};
@@ -167,6 +167,8 @@ fn world(
     }
     // bodies with equal geometry share one shape
     let mut shapes: BTreeMap<String, (ShapeAndMass, Geometry)> = BTreeMap::new();
+    let has_chains = scene.joints.iter().any(|joint| joint.chain.is_some());
+    let mut centres = BTreeMap::new();
     for (index, body) in scene.bodies.iter_mut().enumerate() {
         // an invalid body is not built, but its mesh file is checked
         if !is_valid[index] {
@@ -192,6 +194,9 @@ fn world(
         if let Some((shape, _)) = shapes.get(&key)
             && problems.borrow().is_empty()
         {
+            if has_chains {
+                centres.extend(places(body, shape));
+            }
             builder = bodies(body, shape).into_iter().fold(builder, WorldBuilder::body);
         }
     }
@@ -199,6 +204,21 @@ fn world(
         return None;
     }
     let owners = owners(scene);
+    let (joints, joint_owners) = joints(scene, &centres, |index, key, message| {
+        let tables = top.tables("joint");
+        if let Some(reader) = tables.get(index) {
+            let problem = Problem::new(reader.place_of(key), reader.key(key), message);
+            problems.borrow_mut().push(problem);
+        }
+    });
+    if !problems.borrow().is_empty() {
+        return None;
+    }
+    builder = joints.into_iter().fold(builder, WorldBuilder::joint);
+    builder = scene.loads.iter().cloned().fold(builder, WorldBuilder::load);
+    if let Some(gravity) = scene.central_gravity {
+        builder = builder.central_gravity(gravity);
+    }
     let hint = |error: &BuildError| match error {
         BuildError::Surface { body, .. } => {
             let index = owners.get(body);
@@ -215,6 +235,10 @@ fn world(
                 let reader = owners.get(body).and_then(|&index| readers.get(index));
                 let unstable = Unstable { dt: *dt, critical: *critical, body };
                 problems.borrow_mut().push(default_dt::problem(&top, reader, &unstable));
+                continue;
+            }
+            if let Some(problem) = of_joint_or_load(&error, &top, &joint_owners) {
+                problems.borrow_mut().push(problem);
                 continue;
             }
             let (index, key) = origin(&error, &owners, &readers);
@@ -258,6 +282,56 @@ fn shape_key(body: &BodyScene) -> String {
     format!("{geometry:?} {scale:?} {sampling:?} {mass_model:?} {mass:?} {surface:?}")
 }
 
+/// The centre of mass of the body, or of its copies, by name.
+fn places(scene: &BodyScene, built: &ShapeAndMass) -> Vec<(String, DVec3)> {
+    let centre = scene.position.unwrap_or(built.shape.centre());
+    let poses = scene.copies.as_ref().map_or(vec![(DVec3::ZERO, DQuat::IDENTITY)], |c| c.poses());
+    scene.names().into_iter().zip(poses).map(|(name, (offset, _))| (name, centre + offset)).collect()
+}
+
+/// All joints, and for each name of one the index of its `[[joint]]`; `report` gets the faults of chains.
+fn joints(
+    scene: &Scene,
+    centres: &BTreeMap<String, DVec3>,
+    report: impl Fn(usize, &str, String),
+) -> (Vec<Joint>, BTreeMap<String, usize>) {
+    let mut owners = BTreeMap::new();
+    let mut all = Vec::new();
+    for (index, own) in scene.joints.iter().enumerate() {
+        let count = own.chain.as_ref().map_or(0, |chain| {
+            let body = scene.bodies.iter().find(|body| body.name == *chain);
+            body.and_then(|body| body.copies.as_ref()).map_or(0, Copies::total)
+        });
+        if let (Some(chain), true) = (&own.chain, count < 2) {
+            report(index, "chain", format!("is \"{chain}\", but must be the name of a body with `copies`, two or more"));
+        }
+        for joint in own.joints(count, |name| centres.get(name).copied()) {
+            owners.insert(joint.name.clone().unwrap_or_default(), index);
+            all.push(joint);
+        }
+    }
+    (all, owners)
+}
+
+/// The problem that an error of a joint or load is, at its key.
+fn of_joint_or_load(
+    error: &BuildError,
+    top: &Reader,
+    joint_owners: &BTreeMap<String, usize>,
+) -> Option<Problem> {
+    let (table, index, quantity) = match error {
+        BuildError::Joint { joint, quantity, .. } => ("joint", *joint_owners.get(joint)?, *quantity),
+        BuildError::Load { load, quantity, .. } => ("load", *load, *quantity),
+        _ => return None,
+    };
+    let tables = top.tables(table);
+    let reader = tables.get(index)?;
+    // a key of another table, or one of the motor
+    let key = quantity.split('.').next().unwrap_or(quantity);
+    let place = reader.place_of(key);
+    Some(Problem::new(place, reader.key(key), format!("cannot work: {error}")))
+}
+
 /// The body, or all its copies.
 fn bodies(scene: &BodyScene, built: &ShapeAndMass) -> Vec<Body> {
     let centre = scene.position.unwrap_or(built.shape.centre());
@@ -267,16 +341,16 @@ fn bodies(scene: &BodyScene, built: &ShapeAndMass) -> Vec<Body> {
         .into_iter()
         .zip(poses)
         .map(|(name, (offset, rotation))| {
-            Body::new(built.shape.clone())
+            let body = Body::new(built.shape.clone())
                 .name(name)
                 .mass(built.mass)
                 .position(centre + offset)
                 .orientation(rotation * scene.orientation)
-                .velocity(scene.initial_velocity)
-                .angular_velocity(scene.initial_angular_velocity)
                 .material(scene.material)
                 .surface(scene.surface)
-                .motion(scene.motion.motion())
+                .motion(scene.motion.motion());
+            let body = scene.initial_velocity.into_iter().fold(body, Body::velocity);
+            scene.initial_angular_velocity.into_iter().fold(body, Body::angular_velocity)
         })
         .collect()
 }
@@ -297,6 +371,8 @@ fn origin(
         BuildError::Surface { body, .. } => (Some(body), "surface"),
         BuildError::Overlap { second, .. } => (Some(second), "position"),
         BuildError::Unstable { .. } => (None, "dt"),
+        // reported where their own tables are
+        BuildError::Joint { quantity, .. } | BuildError::Load { quantity, .. } => (None, *quantity),
     };
     let index = body.and_then(|name| owners.get(name).copied());
     // the mass can be given by one of three keys

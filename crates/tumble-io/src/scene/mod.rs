@@ -8,7 +8,7 @@
 //! 1. `load`: reads the text (`scene_text`) and runs the steps below.
 //! 2. `tree`: parses the text into a tree whose nodes know their `place`, and applies `--set`.
 //! 3. `reader`: reads keys of a table by name, type and range, and collects each `problem`.
-//! 4. `read`, `body`, `shape`, `surface`, `motion`, `common`: read each table into the `description`.
+//! 4. `read`, `body`, `shape`, `surface`, `motion`, `joint`, `loads`, `common`: read each table into the `description`.
 //! 5. `geometry` (with `mesh_file`, which finds meshes), `copies`: build shapes, masses and poses; `load` builds the world from them.
 //! 6. `write`: turns the description back into TOML.
 //!
@@ -27,7 +27,9 @@ mod description;
 mod geometry;
 mod geometry_error;
 mod integrator_choice;
+mod joint;
 mod load;
+mod loads;
 mod mesh_file;
 mod motion;
 mod place;
@@ -39,10 +41,11 @@ mod shape;
 mod surface;
 mod tree;
 mod write;
+mod write_joints;
 
 pub use builtin::{BUILTIN, Builtin, builtin};
 pub use description::{
-    BodyScene, BoxScene, Copies, Geometry, MassScene, MeshNotes, MeshScene, MotionScene,
+    BodyScene, BoxScene, Copies, Geometry, JointScene, MassScene, MeshNotes, MeshScene, MotionScene,
     OutputScene, Scene, WallScene,
 };
 pub use integrator_choice::{StepLimits, load_with_integrator};

@@ -6,7 +6,10 @@ use tumble::{DVec3, Integrator, Material, Overlaps, SolverSettings, WallBox, Wal
 
 use super::body::{self, MAX_COPIES};
 use super::common::{is_unit, material, orientation};
-use super::description::{BodyScene, BoxScene, Copies, OutputScene, Scene, WallScene};
+use super::description::{
+    BodyScene, BoxScene, Copies, JointScene, OutputScene, Scene, WallScene,
+};
+use super::{joint, loads};
 use super::problem::Problem;
 use super::reader::{Range, Reader};
 use super::tree::Node;
@@ -62,6 +65,9 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
         box_walls,
         walls,
         bodies,
+        joints: joints(&top),
+        loads: top.tables("load").into_iter().map(loads::load).collect(),
+        central_gravity: top.table("central_gravity").and_then(loads::central_gravity),
         output: top.table("output").map_or_else(OutputScene::default, output),
         force: false,
     };
@@ -89,6 +95,11 @@ fn bodies(top: &Reader, problems: &RefCell<Vec<Problem>>) -> (Vec<BodyScene>, Ve
         top.problem("body", format!("leads to {total} bodies; at most {MAX_COPIES} can be run"));
     }
     (bodies, is_valid)
+}
+
+fn joints(top: &Reader) -> Vec<JointScene> {
+    let tables = top.tables("joint").into_iter().enumerate();
+    tables.filter_map(|(index, table)| joint::joint(table, index)).collect()
 }
 
 fn solver(reader: Reader) -> SolverSettings {

@@ -21,14 +21,19 @@ pub enum Range {
     UpToOne,
     /// Above 0, below 1.
     BelowOne,
+    /// Any number, infinite ones too.
+    Any,
+    /// Above 0, infinity too.
+    PositiveOrInfinite,
 }
 
 impl Range {
     fn allows(self, x: f64) -> bool {
-        x.is_finite()
+        let has_infinite = matches!(self, Self::Any | Self::PositiveOrInfinite);
+        (x.is_finite() || (has_infinite && !x.is_nan()))
             && match self {
-                Self::Finite => true,
-                Self::Positive => x > 0.0,
+                Self::Finite | Self::Any => true,
+                Self::Positive | Self::PositiveOrInfinite => x > 0.0,
                 Self::NotNegative => x >= 0.0,
                 Self::UpToOne => x > 0.0 && x <= 1.0,
                 Self::BelowOne => x > 0.0 && x < 1.0,
@@ -38,7 +43,8 @@ impl Range {
     fn text(self) -> &'static str {
         match self {
             Self::Finite => "finite",
-            Self::Positive => "above 0",
+            Self::Positive | Self::PositiveOrInfinite => "above 0",
+            Self::Any => "not nan",
             Self::NotNegative => "0 or more",
             Self::UpToOne => "above 0, up to 1",
             Self::BelowOne => "above 0 and below 1",
@@ -212,6 +218,64 @@ impl<'a> Reader<'a> {
             }
         }
         (points.len() == items.len()).then_some(points)
+    }
+
+    /// A point, which both values then are, or a pair of points.
+    pub fn point_or_pair(&self, key: &'static str) -> Option<[DVec3; 2]> {
+        let node = self.get(key)?;
+        let point = |node| numbers::<3>(node).map(DVec3::from_array).filter(|p| p.is_finite());
+        let pair = match &node.value {
+            Value::Array(items) if items.len() == 2 => point(&items[0]).zip(point(&items[1])),
+            _ => None,
+        };
+        let found = point(node).map(|p| [p, p]).or(pair.map(|(a, b)| [a, b]));
+        if found.is_none() {
+            self.wrong_type(key, node, "a point [x, y, z] or two points [[x, y, z], [x, y, z]] of finite numbers");
+        }
+        found
+    }
+
+    /// An array of arrays of exactly `N` finite numbers; `what` describes one.
+    pub fn rows<const N: usize>(&self, key: &'static str, what: &str) -> Option<Vec<[f64; N]>> {
+        let node = self.get(key)?;
+        let rows = match &node.value {
+            Value::Array(items) if !items.is_empty() => {
+                let row = |item| numbers::<N>(item).filter(|row| row.iter().all(|x| x.is_finite()));
+                items.iter().map(row).collect::<Option<Vec<_>>>()
+            }
+            _ => None,
+        };
+        if rows.is_none() {
+            self.wrong_type(key, node, &format!("an array of rows {what} of finite numbers"));
+        }
+        rows
+    }
+
+    /// Two names; "world" is `None`.
+    pub fn pair_of_names(&self, key: &'static str) -> Option<[Option<String>; 2]> {
+        let node = self.get(key)?;
+        let name = |node: &Node| match &node.value {
+            Value::String(text) => Some((text != "world").then(|| text.clone())),
+            _ => None,
+        };
+        let pair = match &node.value {
+            Value::Array(items) if items.len() == 2 => name(&items[0]).zip(name(&items[1])),
+            _ => None,
+        };
+        if pair.is_none() {
+            self.wrong_type(key, node, "two names in brackets, of bodies or \"world\"");
+        }
+        pair.map(|(first, second)| [first, second])
+    }
+
+    /// A boolean.
+    pub fn boolean(&self, key: &'static str) -> Option<bool> {
+        let node = self.get(key)?;
+        if let Value::Boolean(value) = node.value {
+            return Some(value);
+        }
+        self.wrong_type(key, node, "true or false");
+        None
     }
 
     /// A boolean (`Ok`) or a number in a range (`Err`), which `what` describes.

@@ -69,7 +69,10 @@ impl Scene {
             Value::Table(table)
         });
         put_tables(&mut top, "wall", walls.collect());
-        put_tables(&mut top, "body", self.bodies.iter().map(|b| Value::Table(body(b))).collect());
+        let is_joined = !self.joints.is_empty();
+        let bodies = self.bodies.iter().map(|own| Value::Table(body(own, is_joined)));
+        put_tables(&mut top, "body", bodies.collect());
+        super::write_joints::put_joints_and_loads(&mut top, self);
         format!("{HEADER}\n\n{top}")
     }
 
@@ -98,7 +101,7 @@ impl BodyScene {
     }
 }
 
-fn body(body: &BodyScene) -> Table {
+fn body(body: &BodyScene, is_joined: bool) -> Table {
     let mut table = Table::new();
     put(&mut table, "name", body.name.clone());
     match &body.geometry {
@@ -147,8 +150,16 @@ fn body(body: &BodyScene) -> Table {
         put(&mut table, "position", vector(position));
     }
     put(&mut table, "orientation", quaternion(body.orientation));
-    put(&mut table, "initial_velocity", vector(body.initial_velocity));
-    put(&mut table, "initial_angular_velocity", vector(body.initial_angular_velocity));
+    // where there are joints, what is left out follows from them
+    let default = (!is_joined).then_some(DVec3::ZERO);
+    for (key, value) in [
+        ("initial_velocity", body.initial_velocity),
+        ("initial_angular_velocity", body.initial_angular_velocity),
+    ] {
+        if let Some(value) = value.or(default) {
+            put(&mut table, key, vector(value));
+        }
+    }
     put_material(&mut table, &body.material);
     put_surface(&mut table, body.surface);
     put_motion(&mut table, &body.motion);
@@ -267,17 +278,17 @@ fn put_material(table: &mut Table, material: &MaterialOverride) {
     number("friction_damping", material.friction_damping);
 }
 
-fn put(table: &mut Table, key: &str, value: impl Into<Value>) {
+pub(super) fn put(table: &mut Table, key: &str, value: impl Into<Value>) {
     table.insert(key.to_owned(), value.into());
 }
 
-fn put_tables(table: &mut Table, key: &str, tables: Vec<Value>) {
+pub(super) fn put_tables(table: &mut Table, key: &str, tables: Vec<Value>) {
     if !tables.is_empty() {
         put(table, key, tables);
     }
 }
 
-fn vector(v: DVec3) -> Value {
+pub(super) fn vector(v: DVec3) -> Value {
     Value::from(v.to_array().to_vec())
 }
 

@@ -14,8 +14,8 @@ pub struct Body {
     pub(super) mass: Mass,
     pub(super) position: Option<DVec3>,
     pub(super) orientation: DQuat,
-    pub(super) velocity: DVec3,
-    pub(super) angular_velocity: DVec3,
+    pub(super) velocity: Option<DVec3>,
+    pub(super) angular_velocity: Option<DVec3>,
     pub(super) material: MaterialOverride,
     pub(super) surface: Surface,
     pub(super) motion: Motion,
@@ -39,8 +39,8 @@ impl Body {
             mass: Mass::Particle(1.0),
             position: None,
             orientation: DQuat::IDENTITY,
-            velocity: DVec3::ZERO,
-            angular_velocity: DVec3::ZERO,
+            velocity: None,
+            angular_velocity: None,
             material: MaterialOverride::default(),
             surface: Surface::None,
             motion: Motion::Free,
@@ -77,15 +77,15 @@ impl Body {
         self
     }
 
-    /// Initial velocity v of the centre of mass (m/s).
+    /// Initial velocity v of the centre of mass (m/s). By default that of its joints, or 0.
     pub fn velocity(mut self, velocity: DVec3) -> Self {
-        self.velocity = velocity;
+        self.velocity = Some(velocity);
         self
     }
 
     /// Initial angular velocity ω, world axes (rad/s).
     pub fn angular_velocity(mut self, angular_velocity: DVec3) -> Self {
-        self.angular_velocity = angular_velocity;
+        self.angular_velocity = Some(angular_velocity);
         self
     }
 

@@ -1,9 +1,14 @@
 //! The description of a world.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::body::Body;
-use crate::{Integrator, Material, MaterialOverride, Overlaps, SolverSettings, WallBox, WallPlane};
+use crate::{
+    BodyView, CentralGravity, ForceFunction, Integrator, Joint, Load, Material, MaterialOverride,
+    Overlaps, SolverSettings, WallBox, WallPlane, Wrench,
+};
 
 /// The description of a world; [`WorldBuilder::build`] checks it and makes the world.
 #[derive(Clone, Debug)]
@@ -20,6 +25,10 @@ pub struct WorldBuilder {
     pub(super) accept_start_in_walls: bool,
     pub(super) walls: Vec<(WallPlane, MaterialOverride)>,
     pub(super) bodies: Vec<Body>,
+    pub(super) joints: Vec<Joint>,
+    pub(super) loads: Vec<Load>,
+    pub(super) force_functions: Vec<ForceFunction>,
+    pub(super) central_gravity: Option<CentralGravity>,
 }
 
 impl Default for WorldBuilder {
@@ -38,6 +47,10 @@ impl Default for WorldBuilder {
             accept_start_in_walls: false,
             walls: Vec::new(),
             bodies: Vec::new(),
+            joints: Vec::new(),
+            loads: Vec::new(),
+            force_functions: Vec::new(),
+            central_gravity: None,
         }
     }
 }
@@ -124,5 +137,40 @@ impl WorldBuilder {
     pub fn body(mut self, body: Body) -> Self {
         self.bodies.push(body);
         self
+    }
+
+    /// Adds a joint between bodies, or of a body with the world.
+    pub fn joint(mut self, joint: Joint) -> Self {
+        self.joints.push(joint);
+        self
+    }
+
+    /// Adds a load on a body.
+    pub fn load(mut self, load: Load) -> Self {
+        self.loads.push(load);
+        self
+    }
+
+    /// Adds a force on a body that a program computes; see [`ForceFunction`].
+    pub fn force_function(
+        mut self,
+        body: impl Into<String>,
+        function: impl Fn(f64, &BodyView) -> Wrench + Send + Sync + 'static,
+    ) -> Self {
+        let function = ForceFunction { body: body.into(), function: Arc::new(function) };
+        self.force_functions.push(function);
+        self
+    }
+
+    /// Sets gravity of a mass at a fixed place, in addition to uniform gravity.
+    pub fn central_gravity(mut self, gravity: CentralGravity) -> Self {
+        self.central_gravity = Some(gravity);
+        self
+    }
+
+    /// Whether bodies are joined or loaded.
+    pub(super) fn has_joints_or_loads(&self) -> bool {
+        let has_loads = !self.loads.is_empty() || !self.force_functions.is_empty();
+        !self.joints.is_empty() || has_loads || self.central_gravity.is_some()
     }
 }

@@ -19,8 +19,10 @@ pub(super) fn body_state(
     if !position.is_finite() {
         return refuse("position", &position, three);
     }
-    if !body.velocity.is_finite() {
-        return refuse("initial_velocity", &body.velocity, three);
+    let body_velocity = body.velocity.unwrap_or(DVec3::ZERO);
+    let body_omega = body.angular_velocity.unwrap_or(DVec3::ZERO);
+    if !body_velocity.is_finite() {
+        return refuse("initial_velocity", &body_velocity, three);
     }
     let q = body.orientation;
     let largest = q.to_array().iter().fold(0.0f64, |m, c| m.max(c.abs()));
@@ -30,16 +32,16 @@ pub(super) fn body_state(
     let orientation = if q.is_normalized() { q } else { (q / largest).normalize() };
     let rotation = DMat3::from_quat(orientation);
     let angular_momentum =
-        rotation * (model.inertia * (rotation.transpose() * body.angular_velocity));
+        rotation * (model.inertia * (rotation.transpose() * body_omega));
     if !angular_momentum.is_finite() {
-        return refuse("initial_angular_velocity", &body.angular_velocity, three);
+        return refuse("initial_angular_velocity", &body_omega, three);
     }
     // a free body may have it: it does not turn about an axis without inertia
-    let lost = model.angular_velocity(rotation, angular_momentum) - body.angular_velocity;
-    if !model.is_free() && lost.length() > 1e-9 * body.angular_velocity.length() {
+    let lost = model.angular_velocity(rotation, angular_momentum) - body_omega;
+    if !model.is_free() && lost.length() > 1e-9 * body_omega.length() {
         let allowed =
             "about an axis about which the body has inertia; mass_model = \"solid\" gives it some";
-        return refuse("initial_angular_velocity", &body.angular_velocity, allowed);
+        return refuse("initial_angular_velocity", &body_omega, allowed);
     }
     let oscillation_velocity = match &body.motion {
         Motion::Prescribed(Prescribed { oscillation: Some(oscillation), .. }) => {
@@ -47,7 +49,7 @@ pub(super) fn body_state(
         }
         _ => DVec3::ZERO,
     };
-    let velocity = body.velocity + oscillation_velocity;
+    let velocity = body_velocity + oscillation_velocity;
     if !velocity.is_finite() {
         return refuse("oscillation", &oscillation_velocity, "no faster than a double can hold");
     }

@@ -14,8 +14,9 @@ use super::pose::BodyPose;
 use super::since_kick::SinceKick;
 use super::solver::{Found, Outcome, Solver};
 use super::tunnelling::TunnellingRisk;
+use crate::joint::JointWork;
 use crate::parallel::{self, CHUNK};
-use crate::{BodyForces, ContactKind, Integrator, Model, PairSpring, State};
+use crate::{BodyForces, BodyState, ContactKind, Integrator, Model, PairSpring, State};
 
 /// Contacts between bodies, and of spheres with walls. Dropping it between steps changes no result.
 #[derive(Clone, Debug, Default)]
@@ -54,6 +55,29 @@ impl BodyContacts {
             (self.lists, self.contacts) = (NeighbourLists::default(), Vec::new());
         }
         self.lists.build(model, &mut self.poses);
+    }
+
+    /// Gives bodies with joints the velocities between two kicks; see [`gather::use_start_velocities`].
+    pub fn use_start_velocities(&mut self, model: &Model, start: &[BodyState]) {
+        if !model.joints.is_empty() {
+            gather::use_start_velocities(model, 0, &mut self.poses, start);
+        }
+    }
+
+    /// Lets the joints act on the velocities in the middle of the kick that the contact forces predict.
+    pub fn predict_joined(&mut self, model: &Model, state: &State, joints: &mut JointWork) {
+        let JointWork { kick, start_coordinates, .. } = joints;
+        kick.begin(model, state, start_coordinates, model.dt);
+        kick.set_mean_twists(model, |body| {
+            (self.poses[body].velocity, self.poses[body].angular_velocity)
+        });
+        kick.solve(model);
+        for &body in &model.joints.bodies {
+            if model.bodies[body as usize].is_free() {
+                let pose = &mut self.poses[body as usize];
+                (pose.velocity, pose.angular_velocity) = kick.mean_twist(body as usize);
+            }
+        }
     }
 
     /// Poses for [`gather::update_poses`], and results for [`gather::gather_forces`].
@@ -132,14 +156,16 @@ impl BodyContacts {
         &mut self,
         model: &Model,
         state: &mut State,
-        solver: &mut Solver,
+        (solver, joints): (&mut Solver, &mut JointWork),
         forces: &mut [BodyForces],
         since_kick: SinceKick,
     ) -> Outcome {
         self.update_neighbour_lists(model, state, &since_kick);
+        self.use_start_velocities(model, &joints.start);
         self.evaluate::<false>(model, &state.pair_springs, since_kick);
         let Self { poses, contacts, lists, .. } = self;
-        solver.solve(model, &Found { chunks: contacts, lists, poses, since_kick }, state, forces)
+        let found = Found { chunks: contacts, lists, poses, since_kick };
+        solver.solve(model, &found, state, (forces, joints))
     }
 
     /// Moves the friction springs after the latest evaluation into the state; to be called once per step.

@@ -5,6 +5,7 @@ use super::neighbour_list::NeighbourLists;
 use super::pair_forces::{PairForces, PairLosses};
 use super::pose::BodyPose;
 use super::since_kick::SinceKick;
+use crate::kinematics::Kinematics;
 use crate::parallel::CHUNK;
 use crate::{BodyForces, BodyState, Model, Wrench};
 
@@ -28,6 +29,23 @@ pub(crate) fn update_poses(
     }
 }
 
+/// Gives the bodies with joints from index `first` on the velocities between two kicks that they had at the beginning of the step, where
+/// all bodies were as in `start`: a second order mean of those in the flight.
+pub(crate) fn use_start_velocities(
+    model: &Model,
+    first: usize,
+    poses: &mut [BodyPose],
+    start: &[BodyState],
+) {
+    for (index, pose) in (first..).zip(poses) {
+        if model.joints.acts_on(index) && model.bodies[index].is_free() {
+            let kinematics = Kinematics::new(&model.bodies[index], &start[index]);
+            pose.drift_velocity = kinematics.velocity;
+            pose.drift_angular_velocity = kinematics.angular_velocity;
+        }
+    }
+}
+
 /// Sets the velocities in `poses`, of the bodies from index `first` on, to those in the middle of a kick by the predicted forces
 /// over the time `h` (s). `forces` are those of contact with walls, predicted too.
 pub(crate) fn predict_velocities(
@@ -41,6 +59,7 @@ pub(crate) fn predict_velocities(
     let mut sums = BodySums::new(results, first);
     for ((index, pose), forces) in (first..).zip(poses).zip(forces) {
         let wrench = sums.next::<true>(index).total + forces.contact();
+        let wrench = if forces.load == Wrench::default() { wrench } else { wrench + forces.load };
         let body = &model.bodies[index];
         if body.is_free() && wrench != Wrench::default() {
             pose.velocity += wrench.force * (0.5 * h / body.mass);

@@ -77,6 +77,9 @@ impl NeighbourLists {
                 chunk.add_walls(model, poses, first);
                 let count = pairs.iter().take_while(|pair| pair[0] == first).count();
                 for &[_, second] in &pairs[..count] {
+                    if model.joints.keeps_apart(first, second) {
+                        continue;
+                    }
                     chunk.add_bodies(model, poses, first, second);
                 }
                 pairs = &pairs[count..];

@@ -73,7 +73,7 @@ impl BodyPose {
             Motion::Free => DVec3::ZERO,
         };
         let [drift_velocity, drift_angular_velocity] =
-            mid_flight(model, &kinematics, state, since_kick);
+            mid_flight(model, index, (&kinematics, state), since_kick);
         let step_displacement =
             since_kick.step * (length(state.velocity) + length(omega) * body.extent);
         Self {
@@ -133,13 +133,14 @@ impl BodyPose {
 /// second order; those from the velocities at its end would be of first order.
 fn mid_flight(
     model: &Model,
-    kinematics: &Kinematics,
-    state: &BodyState,
+    index: usize,
+    (kinematics, state): (&Kinematics, &BodyState),
     since_kick: &SinceKick,
 ) -> [DVec3; 2] {
     let Kinematics { velocity, angular_velocity, .. } = *kinematics;
     let half = 0.5 * since_kick.duration;
-    if !model.integrator.kicks() {
+    // a body with joints has no flight of its own: see `use_start_velocities`
+    if !model.integrator.kicks() || model.joints.acts_on(index) && kinematics.body.is_free() {
         return [velocity, angular_velocity];
     }
     if let Motion::Prescribed(prescribed) = &kinematics.body.motion {

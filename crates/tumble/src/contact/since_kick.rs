@@ -2,7 +2,7 @@
 
 use fearless_simd::{Simd, f64x8, prelude::*};
 
-use crate::{Integrator, Model, State};
+use crate::{BodyState, Integrator, Model, State};
 
 /// A kick by wall contacts.
 #[derive(Clone, Copy, Debug)]
@@ -11,6 +11,8 @@ pub(crate) struct Kick<'a> {
     pub length: f64,
     /// The flight before it.
     pub since_last: &'a SinceKick,
+    /// The body at the beginning of the step, if joints act on it.
+    pub start: Option<&'a BodyState>,
 }
 
 /// The flight of all bodies since the latest kick.

@@ -57,8 +57,8 @@ pub(crate) fn around_implicit_contact(
         gather::update_poses(model, *first, poses, bodies, &since_kick);
     });
     let outcome = model.has_body_contact.then(|| {
-        let Scratch { body_contacts, solver, forces, .. } = scratch;
-        body_contacts.solve(model, state, solver, forces, since_kick)
+        let Scratch { body_contacts, solver, forces, joints, .. } = scratch;
+        body_contacts.solve(model, state, (solver, joints), forces, since_kick)
     });
     for_each_batch(model, state, scratch, after);
     outcome
@@ -73,10 +73,11 @@ fn contact_forces(model: &Model, state: &mut State, scratch: &mut Scratch) {
     let contacts = &mut scratch.body_contacts;
     let since_kick = SinceKick::at_kick(model, state.time);
     contacts.update_neighbour_lists(model, state, &since_kick);
+    contacts.use_start_velocities(model, &scratch.before.bodies);
     let is_damped = |body: &Arc<BodyModel>| body.pair_material.is_damped() || body.is_damped;
     if model.integrator != Integrator::Splitting || !model.bodies.iter().any(is_damped) {
         contacts.evaluate::<false>(model, &state.pair_springs, since_kick);
-    } else if parallel::is_single_threaded() {
+    } else if parallel::is_single_threaded() && !model.has_joints_or_loads() {
         contacts.predict_and_evaluate(model, &state.pair_springs, &scratch.forces, since_kick);
     } else {
         contacts.evaluate::<true>(model, &state.pair_springs, since_kick);
@@ -84,6 +85,10 @@ fn contact_forces(model: &Model, state: &mut State, scratch: &mut Scratch) {
             let Batch { model, first, poses, forces, contact_results, .. } = batch;
             gather::predict_velocities(model, *first, poses, forces, *contact_results, h);
         });
-        scratch.body_contacts.evaluate_again();
+        let Scratch { body_contacts, joints, .. } = scratch;
+        if !model.joints.is_empty() {
+            body_contacts.predict_joined(model, state, joints);
+        }
+        body_contacts.evaluate_again();
     }
 }

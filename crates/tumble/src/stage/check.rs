@@ -48,6 +48,19 @@ pub fn report_failure(
             body_depth: None,
         });
     }
+    if let Some(failure) = scratch.joints.failure.take() {
+        return Err(StepError {
+            step: state.step,
+            time: state.time,
+            body: model.joints.list[failure.joint].name.clone(),
+            particle: None,
+            quantity: StepError::CONSTRAINT,
+            value: failure.error,
+            other: None,
+            dt: Some(0.5 * model.dt),
+            body_depth: None,
+        });
+    }
     if let Some(risk) = scratch.body_contacts.tunnelling_risk() {
         return Err(tunnelling_error(model, state, &risk));
     }

@@ -19,8 +19,10 @@ fn drift_where(batch: &mut Batch, h: f64, may_touch: bool) {
     let model = batch.model;
     let bodies = model.bodies[batch.first..].iter().zip(&mut *batch.bodies);
     let mut drag_loss = batch.workspaces[0].totals.drag;
-    for ((body, state), &body_may_touch) in bodies.zip(&*batch.may_touch) {
-        if body_may_touch == may_touch && body.is_free() {
+    let joints = &model.joints;
+    for (index, ((body, state), &body_may_touch)) in (batch.first..).zip(bodies.zip(&*batch.may_touch)) {
+        // bodies with joints fly together
+        if body_may_touch == may_touch && body.is_free() && !joints.acts_on(index) {
             drag_loss += drift_body(model, body, state, h);
         }
     }
@@ -35,7 +37,7 @@ fn drift_where(batch: &mut Batch, h: f64, may_touch: bool) {
 /// For other mass distributions, drag and gravity are a linear flow that is exact while the body does not turn. One half of
 /// it is applied before and one half after a flight without drag and gravity (Strang splitting): second order in h, with
 /// the correct terminal velocity at any h.
-pub(super) fn drift_body(model: &Model, body: &BodyModel, state: &mut BodyState, h: f64) -> f64 {
+pub(crate) fn drift_body(model: &Model, body: &BodyModel, state: &mut BodyState, h: f64) -> f64 {
     let c = model.velocity_damping_stiffness;
     let Some(modes) = body.drag_modes.as_ref().filter(|_| c > 0.0) else {
         return uniform_drag_flight(model.gravity, body, state, h, c / body.particle_mass());

@@ -65,25 +65,25 @@ impl ImplicitSteps {
     }
 
     /// Ends a part of length `h` (s), whose iterations ended with `outcome`; if they have not converged, the part
-    /// begins anew from the state `before`, and is smaller.
+    /// begins anew from the state `before`, and is smaller. Returns whether it does.
     pub(crate) fn finish(
         &mut self,
         model: &Model,
         (state, before): (&mut State, &mut State),
         outcome: Option<Outcome>,
         h: f64,
-    ) {
+    ) -> bool {
         let divisions = MOST_DIVISIONS - self.size.trailing_zeros();
         if outcome.is_some_and(|outcome| !outcome.has_converged) && divisions < MOST_DIVISIONS {
             let iterations = state.totals.iterations;
             std::mem::swap(state, before);
             state.totals.iterations = iterations;
             state.step_divisions = (divisions + AFTER_FAILURE).min(MOST_DIVISIONS);
-            return;
+            return true;
         }
         state.since_kick = 0.5 * h;
         self.done += self.size;
-        let Some(Outcome { iterations, has_converged }) = outcome else { return };
+        let Some(Outcome { iterations, has_converged }) = outcome else { return false };
         if has_converged
             && iterations <= model.solver.max_iterations / EASY
             && self.done == self.size
@@ -91,6 +91,7 @@ impl ImplicitSteps {
         {
             state.step_divisions = state.step_divisions.saturating_sub(1);
         }
+        false
     }
 }
 

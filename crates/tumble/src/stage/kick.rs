@@ -33,19 +33,19 @@ pub(super) fn kick_body(
     forces: &BodyForces,
     h: f64,
 ) -> RunTotals {
-    if forces.max_depth == 0.0 {
+    if forces.max_depth == 0.0 && !forces.has_others() {
         return RunTotals { slip: forces.slip_loss, ..RunTotals::default() };
     }
-    let total = forces.contact();
+    let total = forces.kick();
     let mean = Kinematics::new(body, state).at_mid_kick(&total, h);
     state.velocity += total.force * (h / body.mass);
     state.angular_momentum += total.torque * h;
     RunTotals {
         dashpot: h * (mean.dissipated_power(&forces.dashpot) + forces.surface_dashpot_power),
         slip: forces.slip_loss,
-        work: h * forces.surface_power,
+        work: h * (forces.surface_power - mean.dissipated_power(&forces.load)),
         max_depth: forces.max_depth,
-        evaluations: 1,
+        evaluations: u64::from(forces.max_depth > 0.0),
         ..RunTotals::default()
     }
 }
@@ -60,7 +60,7 @@ pub(super) fn kinematic_totals(
 ) -> RunTotals {
     let kinematics = Kinematics::new(body, state);
     RunTotals {
-        work: h * (kinematics.dissipated_power(&forces.contact()) + forces.surface_power),
+        work: h * (kinematics.dissipated_power(&forces.of_others()) + forces.surface_power),
         dashpot: h * (kinematics.dissipated_power(&forces.dashpot) + forces.surface_dashpot_power),
         slip: forces.slip_loss,
         max_depth: forces.max_depth,

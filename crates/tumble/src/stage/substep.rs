@@ -266,7 +266,7 @@ impl BodyStepper<'_> {
             contacts: self.contacts,
         };
         let (model, body) = (self.model, self.body);
-        let kick = Kick { length: h, since_last: since_kick };
+        let kick = Kick { length: h, since_last: since_kick, start: None };
         wall_contact_forces(model, body, self.state, self.springs, output, kick);
         let totals = kick_body(self.body, self.state, self.forces, h);
         let contact = self.forces.contact();

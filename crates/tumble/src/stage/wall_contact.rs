@@ -13,9 +13,8 @@ use crate::kinematics::Kinematics;
 pub fn wall_contact(batch: &mut Batch, h: f64) {
     let since_kick = SinceKick::at_kick(batch.model, batch.time);
     let Batch {
-        model, first, bodies, springs, may_touch, forces, next_springs, workspaces, ..
+        model, first, bodies, springs, may_touch, forces, next_springs, workspaces, start, ..
     } = batch;
-    let kick = Kick { length: h, since_last: &since_kick };
     let predicts = model.has_body_contact && h != 0.0;
     let workspace = &mut workspaces[0];
     if predicts {
@@ -26,6 +25,8 @@ pub fn wall_contact(batch: &mut Batch, h: f64) {
     for (index, ((((body, state), springs), &may_touch), (forces, next_springs))) in
         bodies.zip(outputs).enumerate()
     {
+        let start = start.get(*first + index).filter(|_| model.joints.acts_on(*first + index));
+        let kick = Kick { length: h, since_last: &since_kick, start };
         if !may_touch || body.has_spheres() {
             forces.clear_contact();
             next_springs.clear();

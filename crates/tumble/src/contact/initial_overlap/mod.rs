@@ -28,6 +28,7 @@ pub(crate) fn overlaps(model: &Model, state: &State) -> Vec<Overlap> {
         overlaps.extend(coincident::containing_centres(model, state));
         overlaps.extend(overlaps_by_contact(model, state));
     }
+    overlaps.retain(|overlap| !model.joints.keeps_apart(overlap.first, overlap.second));
     overlaps.sort_by(|a, b| {
         (a.first, a.second).cmp(&(b.first, b.second)).then(b.depth.total_cmp(&a.depth))
     });

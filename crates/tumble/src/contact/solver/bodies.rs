@@ -65,13 +65,13 @@ impl Velocities {
     }
 
     #[inline(always)]
-    fn load(&self) -> (DVec3, DVec3) {
+    pub fn load(&self) -> (DVec3, DVec3) {
         let load = |index: usize| f64::from_bits(self.0[index].load(Ordering::Relaxed));
         (DVec3::new(load(0), load(1), load(2)), DVec3::new(load(3), load(4), load(5)))
     }
 
     #[inline(always)]
-    fn store(&self, velocity: DVec3, angular_velocity: DVec3) {
+    pub fn store(&self, velocity: DVec3, angular_velocity: DVec3) {
         let values = [velocity, angular_velocity].map(|v| v.to_array());
         for (cell, value) in self.0.iter().zip(values.as_flattened()) {
             cell.store(value.to_bits(), Ordering::Relaxed);

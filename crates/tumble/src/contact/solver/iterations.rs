@@ -5,6 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
+use super::joints::IteratedJoints;
 use super::bodies::{LaneInertia, LaneMotion, Velocities};
 use super::law::relative_velocity;
 use super::normal_impulse::normal_impulse;
@@ -37,10 +38,21 @@ impl Change {
 }
 
 /// Applies the impulses that the rows begin with, and iterates until they change by less than the tolerance.
-pub(super) fn iterate(rows: &Rows, bodies: &[Velocities], settings: SolverSettings) -> Outcome {
+/// Joints act after each iteration, on one thread.
+pub(super) fn iterate(
+    rows: &Rows,
+    bodies: &[Velocities],
+    settings: SolverSettings,
+    joints: Option<&Mutex<IteratedJoints>>,
+) -> Outcome {
     let blocks = rows.shared();
-    let has_converged = || {
-        let mut all = Change::default();
+    let visit_joints = || joints.map_or(0.0, |joints| lock(joints).visit(bodies));
+    if blocks.is_empty() {
+        visit_joints();
+        return Outcome { iterations: 0, has_converged: true };
+    }
+    let has_converged = |joint_change: f64| {
+        let mut all = Change { change: joint_change, total: 0.0 };
         for block in blocks {
             let Change { change, total } = lock(block).change;
             all.change += change;
@@ -58,10 +70,11 @@ pub(super) fn iterate(rows: &Rows, bodies: &[Velocities], settings: SolverSettin
         ));
     };
     let after = |round: usize| {
+        let joint_change = visit_joints();
         if round == 0 {
             return false;
         }
-        let is_done = has_converged();
+        let is_done = has_converged(joint_change);
         iterations.store(round as u32, Ordering::Relaxed);
         converged.store(is_done, Ordering::Relaxed);
         is_done || round >= settings.max_iterations as usize
@@ -71,7 +84,7 @@ pub(super) fn iterate(rows: &Rows, bodies: &[Velocities], settings: SolverSettin
 }
 
 /// A block is free when its phase begins, or another thread has panicked and its results will not be used.
-fn lock(block: &Mutex<Block>) -> MutexGuard<'_, Block> {
+fn lock<T>(block: &Mutex<T>) -> MutexGuard<'_, T> {
     block.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -24,6 +24,7 @@ mod bodies;
 mod colouring;
 mod groups;
 mod iterations;
+mod joints;
 mod law;
 mod losses;
 mod normal_impulse;

@@ -1,5 +1,7 @@
 //! From contacts to impulses, and from impulses to states, friction springs and losses.
 
+use std::sync::Mutex;
+
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::super::chunk_contacts::ChunkContacts;
@@ -11,9 +13,13 @@ use super::colouring::Colouring;
 use super::groups::{self, ContactPlace, Group};
 use super::iterations::{Outcome, iterate};
 use super::law::{Step, prepare};
-use super::losses::account;
+use super::joints::{IteratedJoints, apply_loads};
+use super::losses::account as account_contacts;
 use super::rows::{Block, Rows, Source};
+use crate::joint::JointWork;
+use crate::kinematics::Kinematics;
 use crate::lanes::vector;
+use crate::stage::account;
 use crate::{BodyForces, ContactImpulse, Model, PairSpring, RunTotals, State, Wrench};
 
 /// Buffers of the solver. Dropping them between steps changes no result.
@@ -54,22 +60,32 @@ impl Solver {
         model: &Model,
         found: &Found,
         state: &mut State,
-        forces: &mut [BodyForces],
+        (forces, joints): (&mut [BodyForces], &mut JointWork),
     ) -> Outcome {
         let SinceKick { step: h, time, .. } = found.since_kick;
         self.bodies.clear();
         let bodies = model.bodies.iter().zip(found.poses);
         self.bodies.extend(bodies.map(|(body, pose)| SolverBody::new(model, body, pose, time)));
+        joints.set_accelerations(model, (&state.bodies, h), |body, acceleration| {
+            self.bodies[body].acceleration = acceleration;
+        });
         self.bodies.push(SolverBody::default());
         self.velocities.clear();
         self.velocities.extend(self.bodies.iter().map(Velocities::new));
+        apply_loads(model, (found.poses, forces), &self.velocities, h);
         let count = model.bodies.len() as u32;
         groups::collect(found.chunks, found.lists, count, &mut self.places, &mut self.groups);
         self.colouring.colour(&self.groups, &self.bodies);
         self.rows.assign(&self.groups, &self.colouring);
         let step = Step { length: h, rest_speed: 2.0 * h * model.gravity.length() };
         self.prepare(found, &state.pair_impulses, step);
-        let outcome = iterate(&self.rows, &self.velocities, model.solver);
+        let outcome = if model.joints.is_empty() {
+            iterate(&self.rows, &self.velocities, model.solver, None)
+        } else {
+            joints.kick.begin(model, state, &joints.start_coordinates, h);
+            let joints = Mutex::new(IteratedJoints { model, kick: &mut joints.kick });
+            iterate(&self.rows, &self.velocities, model.solver, Some(&joints))
+        };
         let mut totals = RunTotals {
             iterations: u64::from(outcome.iterations),
             not_converged: u64::from(!outcome.has_converged),
@@ -77,6 +93,7 @@ impl Solver {
         };
         self.account(step, &mut totals);
         self.move_bodies(model, h, (state, forces), &mut totals);
+        move_by_others(model, h, (state, forces, joints), &mut totals);
         self.store(found, state, &mut totals);
         state.totals += totals;
         outcome
@@ -131,7 +148,7 @@ impl Solver {
     ) {
         let bodies = model.bodies.iter().zip(&mut state.bodies).zip(forces);
         for (((body, state), forces), &impulse) in bodies.zip(&self.impulses) {
-            *forces = BodyForces::default();
+            *forces = BodyForces { load: forces.load, ..BodyForces::default() };
             if impulse == Wrench::default() {
                 continue;
             }
@@ -173,6 +190,32 @@ impl Solver {
     }
 }
 
+/// Applies loads and the impulses of joints over the time `h` (s). The contacts have been applied.
+fn move_by_others(
+    model: &Model,
+    h: f64,
+    (state, forces, joints): (&mut State, &mut [BodyForces], &mut JointWork),
+    totals: &mut RunTotals,
+) {
+    if !model.joints.is_empty() {
+        *totals += account(model, joints, forces, h);
+    }
+    let bodies = model.bodies.iter().zip(&mut state.bodies).zip(&*forces);
+    for ((body, state), forces) in bodies.filter(|(_, forces)| forces.has_others()) {
+        let all = forces.kick();
+        if !body.is_free() {
+            totals.work += h * Kinematics::new(body, state).dissipated_power(&forces.joint);
+            continue;
+        }
+        let Wrench { force, torque } = forces.load + forces.joint;
+        state.velocity += force * (h / body.mass);
+        state.angular_momentum += torque * h;
+        // the kick began half of its change before the middle
+        let mean = Kinematics::new(body, state).at_mid_kick(&all, -h);
+        totals.work -= h * mean.dissipated_power(&forces.load);
+    }
+}
+
 #[inline(always)]
 fn prepare_block<S: Simd>(
     simd: S,
@@ -200,7 +243,7 @@ fn account_block<S: Simd>(
     for pack in packs {
         let range = pack.start as usize..pack.end as usize;
         let rows = (&rows[range.clone()], &mut laws[range]);
-        let (of_pack, of_rows) = account(simd, pack, rows, bodies, step);
+        let (of_pack, of_rows) = account_contacts(simd, pack, rows, bodies, step);
         impulses.push(of_pack);
         *losses += of_rows;
     }

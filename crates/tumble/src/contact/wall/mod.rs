@@ -111,7 +111,14 @@ impl WallContacts {
         }
         let kinematics = Kinematics::new(body, state);
         // over the time between two kicks a body at rest has no velocity, so that the prediction leaves it at rest
-        let mid_flight = kinematics.earlier(model, state, 0.5 * kick.length);
+        let mid_flight = match kick.start {
+            // a body with joints has no flight of its own
+            Some(start) => {
+                let Kinematics { velocity, angular_velocity, .. } = Kinematics::new(body, start);
+                Kinematics { velocity, angular_velocity, ..Kinematics::new(body, state) }
+            }
+            None => kinematics.earlier(model, state, 0.5 * kick.length),
+        };
         self.normal_springs.update(model, &mid_flight, kick.length);
         self.friction.detect(model, &mid_flight, springs, kick);
         self.evaluate(model, &mid_flight, forces);

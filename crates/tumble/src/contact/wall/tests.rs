@@ -48,7 +48,7 @@ fn wall_contact_has_the_same_bits_at_every_simd_level() {
             contacts.normal_springs.update(model, &kinematics, model.dt);
             let since_kick = SinceKick::none(state.time);
             let old = &state.springs[0];
-            let kick = Kick { length: model.dt, since_last: &since_kick };
+            let kick = Kick { length: model.dt, since_last: &since_kick, start: None };
             contacts.friction.detect(model, &kinematics, old, kick);
             contacts.evaluate(model, &kinematics, &mut forces);
             contacts.friction.store_springs(&kinematics, &mut springs);

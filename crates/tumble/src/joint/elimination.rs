@@ -1,0 +1,264 @@
+//! Direct solution of the equations of all joints: block elimination along the graph of joints.
+//!
+//! The matrix S = G M⁻¹ Gᵀ has a block for each joint, and one for each two joints of the same free body. Its elimination needs
+//! few further blocks if joints with few neighbours come first (minimum degree: W. F. Tinney & J. W. Walker, Proc. IEEE 55 (1967)
+//! 1801): none in a tree of bodies with two joints each, so that a chain costs time linear in its length.
+//!
+//! A row that depends on earlier ones leaves nothing of its pivot. It is left out: the others already hold what it would.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
+
+use super::rows::{MAX_ROWS, RowValues};
+
+/// A pivot below this part of its diagonal element is that of a dependent row.
+const DEPENDENT: f64 = 1e-10;
+
+/// A block of the matrix.
+pub(crate) type Block = [[f64; MAX_ROWS]; MAX_ROWS];
+
+/// The order of elimination, and where its results go.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Elimination {
+    /// Joints in the order of their elimination.
+    pub order: Vec<u32>,
+    /// For each of them where its blocks begin in `blocks`, and the end.
+    starts: Vec<u32>,
+    /// Blocks below the diagonal: the place of the later joint in the order.
+    later: Vec<u32>,
+    /// Pairs of joints whose bodies couple them: the earlier and the later one, and their block.
+    pub couplings: Vec<Coupling>,
+    /// Where each update of the elimination goes: for each joint, its blocks in pairs; a block, or a diagonal where the two are one.
+    targets: Vec<u32>,
+}
+
+/// Two joints that act on the same free body.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coupling {
+    /// The joint that is eliminated later: its rows are those of the block.
+    pub later: u32,
+    pub earlier: u32,
+    pub block: u32,
+    /// Which body of either joint it is.
+    pub sides: [u8; 2],
+}
+
+/// The matrix, and its elimination.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Matrix {
+    /// Diagonal blocks, by place in the order; after [`Elimination::factor`] their inverses.
+    pub diagonal: Vec<Block>,
+    pub blocks: Vec<Block>,
+}
+
+impl Elimination {
+    /// For joints that act on these free bodies.
+    pub fn new(joints: &[[Option<u32>; 2]]) -> Self {
+        let mut neighbours = vec![BTreeSet::new(); joints.len()];
+        let mut of_body = BTreeMap::<u32, Vec<(u32, u8)>>::new();
+        for (joint, bodies) in (0u32..).zip(joints) {
+            for (side, body) in (0u8..).zip(bodies) {
+                if let Some(body) = body {
+                    of_body.entry(*body).or_default().push((joint, side));
+                }
+            }
+        }
+        for joints in of_body.values() {
+            for &(a, _) in joints {
+                neighbours[a as usize].extend(joints.iter().map(|(b, _)| *b).filter(|b| *b != a));
+            }
+        }
+        let mut elimination = Self::default();
+        elimination.eliminate(neighbours);
+        elimination.couple(&of_body.into_values().collect::<Vec<_>>());
+        elimination
+    }
+
+    /// Orders the joints by their number of neighbours, and lists all blocks and updates.
+    fn eliminate(&mut self, mut neighbours: Vec<BTreeSet<u32>>) {
+        let count = neighbours.len();
+        let mut queue: BinaryHeap<_> =
+            (0..count).map(|joint| Reverse((neighbours[joint].len(), joint as u32))).collect();
+        let mut place = vec![u32::MAX; count];
+        let mut columns: Vec<Vec<u32>> = Vec::with_capacity(count);
+        while let Some(Reverse((degree, joint))) = queue.pop() {
+            let index = joint as usize;
+            // an entry may be out of date
+            if place[index] != u32::MAX || degree != neighbours[index].len() {
+                continue;
+            }
+            place[index] = self.order.len() as u32;
+            self.order.push(joint);
+            let column: Vec<u32> = std::mem::take(&mut neighbours[index]).into_iter().collect();
+            for &a in &column {
+                let of = &mut neighbours[a as usize];
+                of.remove(&joint);
+                of.extend(column.iter().filter(|b| **b != a));
+                queue.push(Reverse((of.len(), a)));
+            }
+            columns.push(column);
+        }
+        self.starts.push(0);
+        for column in columns {
+            let mut later: Vec<u32> = column.iter().map(|&joint| place[joint as usize]).collect();
+            later.sort_unstable();
+            self.later.extend(later);
+            self.starts.push(self.later.len() as u32);
+        }
+        for place in 0..count {
+            let column = self.column(place);
+            for b in column.clone() {
+                for a in column.start..=b {
+                    let (row, column) = (self.later[b], self.later[a]);
+                    let target = if a == b { row } else { self.block(column, row) };
+                    self.targets.push(target);
+                }
+            }
+        }
+    }
+
+    /// The blocks below the diagonal at a place in the order.
+    fn column(&self, place: usize) -> std::ops::Range<usize> {
+        self.starts[place] as usize..self.starts[place + 1] as usize
+    }
+
+    /// The block of two joints by their places, the earlier one first. They are neighbours.
+    fn block(&self, earlier: u32, later: u32) -> u32 {
+        let column = self.column(earlier as usize);
+        let within = self.later[column.clone()].partition_point(|&place| place < later);
+        (column.start + within) as u32
+    }
+
+    /// Lists the blocks to which the matrix contributes; `bodies` holds the joints of each body, and the side on which it is.
+    fn couple(&mut self, bodies: &[Vec<(u32, u8)>]) {
+        let mut places = vec![0; self.order.len()];
+        for (place, &joint) in (0..).zip(&self.order) {
+            places[joint as usize] = place;
+        }
+        for joints in bodies {
+            for (index, &(a, a_side)) in joints.iter().enumerate() {
+                for &(b, b_side) in &joints[..index] {
+                    let in_order = places[a as usize] < places[b as usize];
+                    let [(earlier, e_side), (later, l_side)] =
+                        if in_order { [(a, a_side), (b, b_side)] } else { [(b, b_side), (a, a_side)] };
+                    let block = self.block(places[earlier as usize], places[later as usize]);
+                    self.couplings.push(Coupling { later, earlier, block, sides: [l_side, e_side] });
+                }
+            }
+        }
+    }
+
+    /// The number of blocks below the diagonal.
+    pub fn block_count(&self) -> usize {
+        self.later.len()
+    }
+
+    /// Eliminates. Rows without a diagonal element are left out.
+    pub fn factor(&self, matrix: &mut Matrix) {
+        let mut targets = self.targets.iter();
+        let Matrix { diagonal, blocks } = matrix;
+        let originals: Vec<RowValues> = diagonal
+            .iter()
+            .map(|block| std::array::from_fn(|row| block[row][row]))
+            .collect();
+        for place in 0..self.order.len() {
+            let inverse = inverse(&diagonal[place], &originals[place]);
+            diagonal[place] = inverse;
+            let column = self.column(place);
+            for b in column.clone() {
+                let scaled = product(&blocks[b], &inverse);
+                for a in column.start..=b {
+                    let update = product_with_transpose(&scaled, &blocks[a]);
+                    let Some(&target) = targets.next() else { return };
+                    let target = if a == b {
+                        &mut diagonal[target as usize]
+                    } else {
+                        &mut blocks[target as usize]
+                    };
+                    subtract(target, &update);
+                }
+            }
+        }
+    }
+
+    /// Solves S x = `values`, in place; `values` are by joint. Rows that are left out get 0.
+    pub fn solve(&self, matrix: &Matrix, values: &mut [RowValues]) {
+        let Matrix { diagonal, blocks } = matrix;
+        for (place, &joint) in self.order.iter().enumerate() {
+            let y = times(&diagonal[place], &values[joint as usize]);
+            for at in self.column(place) {
+                let later = &mut values[self.order[self.later[at] as usize] as usize];
+                let update = times(&blocks[at], &y);
+                later.iter_mut().zip(update).for_each(|(value, update)| *value -= update);
+            }
+        }
+        for (place, &joint) in self.order.iter().enumerate().rev() {
+            let mut y = values[joint as usize];
+            for at in self.column(place) {
+                let later = values[self.order[self.later[at] as usize] as usize];
+                for (column, value) in y.iter_mut().enumerate() {
+                    *value -= (0..MAX_ROWS).map(|row| blocks[at][row][column] * later[row]).sum::<f64>();
+                }
+            }
+            values[joint as usize] = times(&diagonal[place], &y);
+        }
+    }
+}
+
+/// The inverse of a symmetric block on its independent rows, 0 elsewhere. `original` is its diagonal before the elimination of others.
+fn inverse(block: &Block, original: &RowValues) -> Block {
+    // L D Lᵀ
+    let mut l = Block::default();
+    let mut d = RowValues::default();
+    for row in 0..MAX_ROWS {
+        for column in 0..row {
+            let sum: f64 = (0..column).map(|k| l[row][k] * l[column][k] * d[k]).sum();
+            l[row][column] =
+                if d[column] > 0.0 { (block[row][column] - sum) / d[column] } else { 0.0 };
+        }
+        let sum: f64 = (0..row).map(|k| l[row][k] * l[row][k] * d[k]).sum();
+        let pivot = block[row][row] - sum;
+        d[row] = if pivot > DEPENDENT * original[row] { pivot } else { 0.0 };
+        l[row][row] = 1.0;
+    }
+    // column by column of the inverse
+    let mut inverse = Block::default();
+    for column in (0..MAX_ROWS).filter(|&column| d[column] > 0.0) {
+        let mut x = RowValues::default();
+        x[column] = 1.0;
+        for row in column + 1..MAX_ROWS {
+            x[row] = -(column..row).map(|k| l[row][k] * x[k]).sum::<f64>();
+        }
+        for row in (0..MAX_ROWS).rev() {
+            let value = if d[row] > 0.0 { x[row] / d[row] } else { 0.0 };
+            let sum: f64 = (row + 1..MAX_ROWS).map(|k| l[k][row] * x[k]).sum();
+            x[row] = if d[row] > 0.0 { value - sum } else { 0.0 };
+        }
+        for row in 0..MAX_ROWS {
+            inverse[row][column] = x[row];
+        }
+    }
+    inverse
+}
+
+fn product(a: &Block, b: &Block) -> Block {
+    std::array::from_fn(|row| {
+        std::array::from_fn(|column| (0..MAX_ROWS).map(|k| a[row][k] * b[k][column]).sum())
+    })
+}
+
+fn product_with_transpose(a: &Block, b: &Block) -> Block {
+    std::array::from_fn(|row| {
+        std::array::from_fn(|column| (0..MAX_ROWS).map(|k| a[row][k] * b[column][k]).sum())
+    })
+}
+
+fn subtract(from: &mut Block, what: &Block) {
+    for (from, what) in from.iter_mut().zip(what) {
+        from.iter_mut().zip(what).for_each(|(from, what)| *from -= what);
+    }
+}
+
+fn times(a: &Block, x: &RowValues) -> RowValues {
+    std::array::from_fn(|row| (0..MAX_ROWS).map(|k| a[row][k] * x[k]).sum())
+}
