@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use tumble::{
-    DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Overlaps, Prescribed,
-    Primitive, Sampling, SolverSettings, Surface, WallBox, WallPlane,
+    DMat3, DQuat, DVec3, Integrator, MassModel, Material, MaterialOverride, Motion, Overlaps,
+    Prescribed, Primitive, Sampling, SolverSettings, Surface, WallBox, WallPlane,
 };
 
 use crate::mesh::{LengthUnit, Repair, Weld};
@@ -83,6 +83,10 @@ pub struct BodyScene {
     pub mass_model: MassModel,
     /// The mass.
     pub mass: MassScene,
+    /// Its centre of mass, in the coordinates of the geometry, before `scale`; `None`: that of the mass model.
+    pub center_of_mass: Option<DVec3>,
+    /// Its inertia tensor about its centre of mass, in the axes of the geometry (kg·m²); `None`: that of the mass model.
+    pub inertia: Option<DMat3>,
     /// Centre of mass at the start (m); `None`: that of the coordinates.
     pub position: Option<DVec3>,
     /// Orientation at the start.

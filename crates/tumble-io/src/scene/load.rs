@@ -255,7 +255,8 @@ fn owners(scene: &Scene) -> BTreeMap<String, usize> {
 /// A key that is equal for bodies with equal shape, mass and surface.
 fn shape_key(body: &BodyScene) -> String {
     let BodyScene { geometry, scale, sampling, mass_model, mass, surface, .. } = body;
-    format!("{geometry:?} {scale:?} {sampling:?} {mass_model:?} {mass:?} {surface:?}")
+    let given = (body.center_of_mass, body.inertia);
+    format!("{geometry:?} {scale:?} {sampling:?} {mass_model:?} {mass:?} {given:?} {surface:?}")
 }
 
 /// The body, or all its copies.

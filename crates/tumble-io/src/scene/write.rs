@@ -143,6 +143,13 @@ fn body(body: &BodyScene) -> Table {
         MassScene::Total(mass) => put(&mut table, "mass", mass),
         MassScene::Density(density) => put(&mut table, "density", density),
     }
+    if let Some(centre) = body.center_of_mass {
+        put(&mut table, "center_of_mass", vector(centre));
+    }
+    if let Some(inertia) = body.inertia {
+        let rows = inertia.transpose().to_cols_array_2d();
+        put(&mut table, "inertia", rows.map(|row| row.to_vec()).to_vec());
+    }
     if let Some(position) = body.position {
         put(&mut table, "position", vector(position));
     }
