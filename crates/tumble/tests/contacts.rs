@@ -1,9 +1,11 @@
 //! The contacts of a step one by one: their wrenches add up to those of the bodies.
 #![allow(clippy::unwrap_used)]
 
+use std::sync::Arc;
+
 use tumble::{
     Body, ContactPartner, DMat3, DQuat, DVec3, Damping, Integrator, MassModel, Material, Mesh,
-    Primitive, Sampling, Shape, Surface, WallBox, World, WorldBuilder, Wrench,
+    Motion, Prescribed, Primitive, Sampling, Shape, Surface, WallBox, World, WorldBuilder, Wrench,
 };
 
 fn box_mesh(divisions: u32) -> Mesh {
@@ -133,6 +135,33 @@ fn meshes_add_up() {
             let [at_walls, between] = check(world, (0.5 / dt) as u64);
             assert!(at_walls > 20 && between > 5, "{integrator:?} {at_walls} {between}");
         }
+    }
+}
+
+/// More bodies than the step works on at a time, on a conveyor belt.
+#[test]
+fn many_bodies_on_a_belt_add_up() {
+    for (integrator, dt) in [(Integrator::Splitting, 2e-4), (Integrator::Implicit, 2e-3)] {
+        let belt = Prescribed { oscillation: None, surface_velocity: DVec3::X * 0.5 };
+        let plate = Primitive::Box { size: DVec3::new(1.8, 0.1, 1.8), divisions: 1 };
+        let plate = Body::new(solid(&plate.mesh().unwrap()))
+            .position(DVec3::Y * -0.9)
+            .surface(Surface::Mesh)
+            .motion(Motion::Prescribed(belt));
+        let ball = Arc::new(Shape::from_particles(&[DVec3::ZERO, DVec3::X * 0.02]).unwrap());
+        let ball = |index: usize| {
+            let of = |n: usize| n as f64 * 0.15;
+            let place = DVec3::new(of(index % 5), of(index / 25), of(index / 5 % 5));
+            Body::new(ball.clone())
+                .position(place - DVec3::new(0.3, 0.78, 0.3))
+                .surface(Surface::Spheres { radius: 0.06 })
+                .velocity(DVec3::Y * (0.1 * (index % 3) as f64 - 0.5))
+        };
+        let material = material(0.4, Damping::Restitution(0.5));
+        let builder = room().integrator(integrator).dt(dt).material(material).body(plate);
+        let world = (0..100).map(ball).fold(builder, WorldBuilder::body).build().unwrap();
+        let [_, between] = check(world, (0.25 / dt) as u64);
+        assert!(between > 100, "{integrator:?} {between}");
     }
 }
 

@@ -252,11 +252,13 @@ pub struct OutputScene {
     pub interval: f64,
     /// Simulated time between checkpoints (s), in addition to those by wall-clock time.
     pub checkpoint_interval: Option<f64>,
+    /// Whether `contact_points.csv` is written.
+    pub contact_points: bool,
 }
 
 impl Default for OutputScene {
     fn default() -> Self {
-        Self { interval: 1.0 / 60.0, checkpoint_interval: None }
+        Self { interval: 1.0 / 60.0, checkpoint_interval: None, contact_points: false }
     }
 }
 

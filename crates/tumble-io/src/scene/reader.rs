@@ -230,6 +230,16 @@ impl<'a> Reader<'a> {
         (points.len() == items.len()).then_some(points)
     }
 
+    /// A boolean.
+    pub fn switch(&self, key: &'static str) -> Option<bool> {
+        let node = self.get(key)?;
+        if let Value::Boolean(boolean) = node.value {
+            return Some(boolean);
+        }
+        self.wrong_type(key, node, "true or false");
+        None
+    }
+
     /// A boolean (`Ok`) or a number in a range (`Err`), which `what` describes.
     pub fn switch_or_number(
         &self,

@@ -49,6 +49,9 @@ impl Scene {
             if let Some(interval) = self.output.checkpoint_interval {
                 put(&mut output, "checkpoint_interval", interval);
             }
+            if self.output.contact_points {
+                put(&mut output, "contact_points", true);
+            }
             output
         });
         if let Some(own) = &self.box_walls {
@@ -80,6 +83,16 @@ impl Scene {
             .iter()
             .flat_map(|own| own.walls.planes().into_iter().map(|plane| (plane, own.material)));
         of_box.chain(self.walls.iter().map(|wall| (wall.plane, wall.material))).collect()
+    }
+
+    /// The names of all walls, in the order of [`Scene::all_walls`]: a face of the box as in `open`, a single wall as `wall 0`, …
+    pub fn wall_names(&self) -> Vec<String> {
+        let open = self.box_walls.iter().map(|own| own.walls.open);
+        let faces = open.flat_map(|open| {
+            let faces = WallBox::FACES.iter().zip(open).filter(|(_, is_open)| !is_open);
+            faces.map(|(face, _)| (*face).to_owned())
+        });
+        faces.chain((0..self.walls.len()).map(|index| format!("wall {index}"))).collect()
     }
 
     /// The names of all bodies, copies included, in the order of the world.
