@@ -28,6 +28,7 @@ pub fn scene_info(name: &str, sets: &[String]) -> Result<(), Failure> {
     let (scene, world) = (&loaded.scene, &loaded.world);
     let limits = StepLimits::new(scene, world);
     let mut rows = about(scene, world);
+    rows.extend(given_mass(scene, world));
     rows.extend(steps(scene, &limits));
     rows.extend(choices(scene, &limits));
     print(&wrapped_columns(&rows))
@@ -49,6 +50,40 @@ fn about(scene: &Scene, world: &World) -> Vec<Row> {
         ("duration", format!("{} s", number(scene.duration))),
         ("integrator", scene.integrator.name().to_owned()),
     ]);
+    rows
+}
+
+/// The most bodies with given mass properties that are listed.
+const MAX_LISTED: usize = 8;
+
+/// The mass properties that the scene gives in place of those of the mass model.
+fn given_mass(scene: &Scene, world: &World) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let mut index = 0;
+    for body in &scene.bodies {
+        // copies have the properties of the first one
+        let shape = &world.body(index).model().shape;
+        let mass = world.body(index).model().mass;
+        index += body.names().len();
+        let centre = body.center_of_mass.map(|_| {
+            let [x, y, z] = shape.centre().to_array().map(number);
+            format!("centre of mass ({x}, {y}, {z}) m")
+        });
+        let moments = body.inertia.map(|_| {
+            let [x, y, z] = (shape.principal().moments * mass).to_array().map(number);
+            format!("principal moments ({x}, {y}, {z}) kg·m²")
+        });
+        let given: Vec<String> = centre.into_iter().chain(moments).collect();
+        if !given.is_empty() {
+            let label = if rows.is_empty() { "given mass" } else { "" };
+            rows.push((label, format!("\"{}\": {}", on_one_line(&body.name), given.join(", "))));
+        }
+    }
+    if rows.len() > MAX_LISTED {
+        let more = rows.len() - MAX_LISTED;
+        rows.truncate(MAX_LISTED);
+        rows.push(("", format!("and {}", plural(more, "more body", "more bodies"))));
+    }
     rows
 }
 

@@ -129,6 +129,58 @@ fn numbers_out_of_range_are_rejected() {
 }
 
 #[test]
+fn impossible_mass_properties_are_rejected() {
+    let unit = "inertia = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
+    check_body_lines(&[
+        (unit, &["`body.0.inertia` needs `mass` (kg)", ":4:11"]),
+        (
+            &format!("particle_mass = 1\n{unit}"),
+            &["`body.0.inertia` only goes with `mass`", "given by `particle_mass`", ":5:11"],
+        ),
+        (&format!("density = 1\n{unit}"), &["given by `density`", ":5:11"]),
+        (
+            "mass = 1\ninertia = [1, 1, 1]",
+            &["`body.0.inertia` must be three rows of three finite numbers", ":5:11"],
+        ),
+        ("mass = 1\ninertia = [[1, 0, 0], [0, 1, 0]]", &["must be three rows", ":5:11"]),
+        ("mass = 1\ninertia = [[1, 0, 0], [0, nan, 0], [0, 0, 1]]", &["finite numbers"]),
+        (
+            "mass = 2\ninertia = [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]",
+            &["`body.0.inertia` must be symmetric", ":5:11"],
+        ),
+        (
+            "mass = 2\ninertia = [[1, 0, 0], [0, 1, 0], [0, 0, 2.1]]",
+            &[
+                "`body.0.inertia` is that of no body",
+                "1.0000e0, 1.0000e0 and 2.1000e0 kg·m²",
+                "at most the sum of the others",
+                ":5:11",
+            ],
+        ),
+        ("mass = 2\ninertia = [[-1, 0, 0], [0, 1, 0], [0, 0, 1]]", &["is that of no body"]),
+        (
+            "mass = 2\ninertia = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]",
+            &[
+                "`body.0.inertia` cannot work: there is no moment of inertia about the axis",
+                ":5:11",
+            ],
+        ),
+        (
+            "mass = 1e-300\ninertia = [[1e300, 0, 0], [0, 1e300, 0], [0, 0, 1e300]]",
+            &["`body.0.inertia` is so large", ":5:11"],
+        ),
+        ("center_of_mass = [0, 0]", &["`body.0.center_of_mass` must be an array of 3", ":4:18"]),
+        ("center_of_mass = [0, inf, 0]", &["`body.0.center_of_mass` must hold numbers", ":4:18"]),
+        ("center_of_mass = [1e200, 0, 0]", &["`body.0.center_of_mass` is so large", ":4:18"]),
+        ("centre_of_mass = [0, 0, 0]", &["did you mean `center_of_mass`?"]),
+    ]);
+    let dir = TestDir::new();
+    let beside = "[[body]]\nparticles = [[0, 0, 0], [1, 0, 0]]\ncenter_of_mass = [0, 1, 0]\n";
+    let parts = ["`body.0.center_of_mass` needs `mass` and `inertia` beside it", "s.toml:3:18"];
+    assert_contains(&dir.rejected(beside, &[]), &parts);
+}
+
+#[test]
 fn wrong_types_are_rejected() {
     check_top_lines(&[
         ("dt = \"fast\"", &["`dt` must be a number, above 0, but is a string", ":2:6"]),

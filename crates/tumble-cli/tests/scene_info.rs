@@ -69,6 +69,18 @@ fn a_scene_without_contact_has_no_critical_step() {
 }
 
 #[test]
+fn given_mass_properties_are_named() {
+    let dir = TestDir::new();
+    let keys = "center_of_mass = [0.01, 0, 0]\ninertia = [[1, 0, 0], [0, 1, 0], [0, 0, 2]]\n";
+    dir.write("s.toml", format!("{SCENE}{keys}"));
+    let out = dir.tumble(&["info", "s.toml"]).expect_status(0).stdout;
+    let given = "\"ball\": centre of mass (0.01, 0, 0) m, principal moments (1, 1, 2) kg·m²";
+    assert_contains(row(&out, "given mass"), &[given]);
+    dir.write("s.toml", SCENE);
+    assert!(!dir.tumble(&["info", "s.toml"]).expect_status(0).stdout.contains("given mass"));
+}
+
+#[test]
 fn what_is_neither_a_mesh_nor_a_scene_is_status_2_and_names_both_forms() {
     let dir = TestDir::new();
     dir.write("t.obj", TETRAHEDRON);

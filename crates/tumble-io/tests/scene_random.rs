@@ -37,7 +37,7 @@ fn judge(loaded: Result<Loaded, SceneError>) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-const WORDS: [&str; 71] = [
+const WORDS: [&str; 75] = [
     "duration",
     "dt",
     "gravity",
@@ -66,6 +66,9 @@ const WORDS: [&str; 71] = [
     "sampling",
     "spacing",
     "mass_model",
+    "center_of_mass",
+    "inertia",
+    "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
     "position",
     "orientation",
     "copies",
@@ -73,6 +76,7 @@ const WORDS: [&str; 71] = [
     "seed",
     "[output]",
     "interval",
+    "contact_points",
     "radius",
     "subdivisions",
     "surface",
@@ -357,4 +361,30 @@ fn a_clump_of_solid_balls_weighs_its_union_once() {
     // without spheres there is nothing solid
     let error = clump("surface = \"none\"\n").unwrap_err().to_string();
     assert!(error.contains("only goes with surface = \"spheres\""), "{error}");
+}
+
+#[test]
+fn given_mass_properties_are_in_the_coordinates_of_the_shape_and_are_written_back() {
+    let of = |keys: &str| {
+        let text = format!("[[body]]\nshape = \"box\"\nsize = [1, 1, 1]\nscale = 0.5\n{keys}");
+        load(&text, &[]).unwrap()
+    };
+    let centre = tumble::DVec3::new(0.1, 0.2, 0.3);
+    let inertia = "inertia = [[0.03, 0.001, 0], [0.001, 0.04, 0], [0, 0, 0.05]]\n";
+    let given = of(&format!("mass = 3\ncenter_of_mass = [0.2, 0.4, 0.6]\n{inertia}"));
+    let body = &given.world.model().bodies[0];
+    // the centre is scaled as the shape is, the inertia is not
+    assert_eq!(body.shape.centre(), centre);
+    assert!((body.inertia.x_axis - tumble::DVec3::new(0.03, 0.001, 0.0)).length() < 1e-15);
+    // without a position the shape stays where it is
+    assert_eq!(given.world.body(0).position(), centre);
+    let placed = of("position = [1, 2, 3]\ncenter_of_mass = [0.2, 0.4, 0.6]\n");
+    assert_eq!(placed.world.body(0).position(), tumble::DVec3::new(1.0, 2.0, 3.0));
+    // the inertia of the mass model about its own centre stays
+    let plain = of("");
+    let [moved, own] = [&placed, &plain].map(|l| l.world.model().bodies[0].shape.gyration());
+    assert!((moved - own).to_cols_array().iter().all(|x| x.abs() < 1e-15));
+    let again = load(&given.scene.to_toml(), &[]).unwrap();
+    assert_eq!(again.world.model().bodies[0].shape, body.shape);
+    assert_eq!(again.scene.to_toml(), given.scene.to_toml());
 }

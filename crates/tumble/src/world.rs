@@ -6,8 +6,9 @@ use glam::{DMat3, DQuat, DVec3};
 
 use crate::stage::{self, MouseSpring};
 use crate::{
-    BodyDepth, BodyForces, BodyModel, BodyState, Energy, Model, PenetrationDepths, Scratch, State,
-    StateError, StepError, Wrench, parallel, step::step,
+    BodyDepth, BodyForces, BodyModel, BodyState, Contact, Energy, Integrator, Model,
+    PenetrationDepths, Scratch, State, StateError, StepError, Wrench, contact_list, parallel,
+    step::step,
 };
 
 /// A simulation: a model and its state, advanced step by step.
@@ -20,6 +21,10 @@ pub struct World {
     mouse_spring: Option<MouseSpring>,
     /// The work of the mouse spring (J).
     mouse_spring_work: f64,
+    /// Whether [`World::contacts`] is to know the contacts of the next steps.
+    keeps_contacts: bool,
+    /// The state before the latest step, if it is kept.
+    before: Option<Box<State>>,
 }
 
 impl World {
@@ -30,6 +35,8 @@ impl World {
             scratch: Scratch::default(),
             mouse_spring: None,
             mouse_spring_work: 0.0,
+            keeps_contacts: false,
+            before: None,
         }
     }
 
@@ -38,17 +45,31 @@ impl World {
     /// # Errors
     /// [`StepError`] if the new state is not valid. The world keeps that state for inspection.
     pub fn step(&mut self) -> Result<(), StepError> {
+        self.step_and_keep(self.keeps_contacts)
+    }
+
+    /// One step, after which [`World::contacts`] knows its contacts if `keeps` says so.
+    fn step_and_keep(&mut self, keeps: bool) -> Result<(), StepError> {
         let Some(spring) = self.mouse_spring else {
-            return step(&self.model, &mut self.state, &mut self.scratch);
+            return self.advance(keeps);
         };
         // half of the impulse before the step and half after
         let h = 0.5 * self.model.dt;
         self.mouse_spring_work +=
             stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
-        step(&self.model, &mut self.state, &mut self.scratch)?;
+        self.advance(keeps)?;
         self.mouse_spring_work +=
             stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
         Ok(())
+    }
+
+    /// One step without the mouse spring.
+    fn advance(&mut self, keeps: bool) -> Result<(), StepError> {
+        match &mut self.before {
+            Some(before) if keeps => before.copy_from(&self.state),
+            before => *before = keeps.then(|| Box::new(self.state.clone())),
+        }
+        step(&self.model, &mut self.state, &mut self.scratch)
     }
 
     /// Advances time by `count` steps: as many calls of [`World::step`], but threads stay awake between them, so that it is faster.
@@ -56,7 +77,11 @@ impl World {
     /// # Errors
     /// [`StepError`] of the first step whose state is not valid, which is the last one.
     pub fn steps(&mut self, count: u64) -> Result<(), StepError> {
-        parallel::run(self.model.bodies.len(), || (0..count).try_for_each(|_| self.step()))
+        parallel::run(self.model.bodies.len(), || {
+            // only those of the last step can be asked for
+            let keeps = self.keeps_contacts;
+            (1..=count).try_for_each(|number| self.step_and_keep(keeps && number == count))
+        })
     }
 
     /// Attaches a mouse spring from the next step on, or removes it with `None`.
@@ -90,12 +115,14 @@ impl World {
         state.check_fits(&self.model)?;
         (self.state, self.scratch) = (state, Scratch::default());
         (self.mouse_spring, self.mouse_spring_work) = (None, 0.0);
+        self.before = None;
         Ok(())
     }
 
     /// Drops all cached data. No result changes.
     pub fn clear_scratch(&mut self) {
         self.scratch = Scratch::default();
+        self.before = None;
     }
 
     /// Time t (s).
@@ -172,6 +199,29 @@ impl World {
     /// The largest error of the constraints of all joints now (m, or rad for directions).
     pub fn constraint_error(&self) -> f64 {
         crate::joint::constraint_error(&self.model, &self.state)
+    }
+
+    /// Whether [`World::contacts`] is to know the contacts of steps from the next one on; false at first. A step then copies its state.
+    pub fn keep_contacts(&mut self, keep: bool) {
+        self.keeps_contacts = keep;
+    }
+
+    /// The contacts of the latest step, one by one: by body, then by what it touches, walls first. Every contact is there once; its
+    /// [`wrench_on`](Contact::wrench_on) a body, summed over all contacts, is the [`World::contact_wrench`] of the body.
+    ///
+    /// Places and forces are those at the kick of the step, which is in its middle (at its start under [`Integrator::Euler`]). Under
+    /// [`Integrator::Implicit`] forces are means over the kick, and where a step was divided, those of its last part. With
+    /// [`Model::energy_tolerance`] they are those of an undivided kick.
+    ///
+    /// Empty without [`World::keep_contacts`], and before the first step with it.
+    pub fn contacts(&self) -> Vec<Contact> {
+        let Some(before) = &self.before else { return Vec::new() };
+        if self.model.integrator == Integrator::Implicit {
+            return contact_list::solved_contacts(&self.state, &self.scratch);
+        }
+        parallel::run(self.model.bodies.len(), || {
+            contact_list::contacts_of_step(&self.model, before)
+        })
     }
 
     /// The largest penetration depths now.

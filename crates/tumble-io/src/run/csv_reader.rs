@@ -147,6 +147,15 @@ pub(crate) fn parse_contact(row: &str) -> Option<(f64, Cow<'_, str>, [f64; 6])> 
     parse_body_row(row)
 }
 
+/// The time (s) of a row of `contact_points.csv`, if it is one.
+pub(super) fn parse_contact_point_time(row: &str) -> Option<f64> {
+    let (time, rest) = row.split_once(',')?;
+    let (_, rest) = split_text(rest)?;
+    let (_, rest) = split_text(rest)?;
+    parse_numbers::<10>(rest)?;
+    time.parse().ok()
+}
+
 fn parse_body_row<const N: usize>(row: &str) -> Option<(f64, Cow<'_, str>, [f64; N])> {
     let (time, rest) = row.split_once(',')?;
     let (body, rest) = split_text(rest)?;

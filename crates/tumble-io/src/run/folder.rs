@@ -18,6 +18,8 @@ pub(crate) const TRAJECTORY_FILE: &str = "trajectory.csv";
 pub(crate) const ENERGY_FILE: &str = "energy.csv";
 /// One row per frame and body in contact.
 pub(super) const CONTACTS_FILE: &str = "contacts.csv";
+/// One row per frame and contact, where the scene asks for it.
+pub(super) const CONTACT_POINTS_FILE: &str = "contact_points.csv";
 /// The run in a few numbers; written last, so that its presence marks a complete run.
 pub(super) const SUMMARY_FILE: &str = "summary.json";
 /// Plot of the energy ledger.
@@ -30,11 +32,12 @@ pub(super) const MOTION_PAGE_FILE: &str = "motion.html";
 pub const CHECKPOINT_FILE: &str = "checkpoint.tumble";
 
 /// All files that a run writes. Other files in the folder are never touched.
-pub(super) const FILES: [&str; 9] = [
+pub(super) const FILES: [&str; 10] = [
     SCENE_FILE,
     TRAJECTORY_FILE,
     ENERGY_FILE,
     CONTACTS_FILE,
+    CONTACT_POINTS_FILE,
     SUMMARY_FILE,
     ENERGY_PLOT_FILE,
     MOTION_PICTURE_FILE,

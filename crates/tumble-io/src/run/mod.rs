@@ -14,6 +14,7 @@
 //! | `folder` | [`RunFolder`]: names of all files, creation of the folder, writing of files |
 //! | `kept_meshes` | the meshes of a run, kept with its folder |
 //! | `trajectory` | rows of `trajectory.csv` and `contacts.csv` |
+//! | `contact_points` | rows of `contact_points.csv` |
 //! | `energy_ledger` | rows of `energy.csv` |
 //! | `csv_reader` | reads and parses those rows |
 //! | `picture_input` | scene and frames as input of the picture module |
@@ -30,6 +31,7 @@
 //! file with a row per frame is a field of `CsvFiles` in `run_writer`; open it in `Recorder::start`
 //! and `Recorder::resume`, and measure its length up to the checkpoint in `recorded_rows`.
 
+mod contact_points;
 mod csv_reader;
 mod energy_ledger;
 mod error;
@@ -48,6 +50,7 @@ mod run_writer;
 mod summary;
 mod trajectory;
 
+pub use contact_points::CONTACT_POINTS_HEADER;
 pub use csv_reader::RowError;
 pub use energy_ledger::{ENERGY_HEADER, EnergyColumns, energy_row};
 pub use error::RunError;

@@ -2,9 +2,12 @@
 
 use tumble::{DQuat, DVec3, World, Wrench};
 
-use super::csv_reader::{CsvReader, RowError, parse_contact, parse_energy, parse_trajectory};
+use super::contact_points::CONTACT_POINTS_HEADER;
+use super::csv_reader::{
+    CsvReader, RowError, parse_contact, parse_contact_point_time, parse_energy, parse_trajectory,
+};
 use super::energy_ledger::EnergyColumns;
-use super::folder::{CONTACTS_FILE, ENERGY_FILE, RunFolder, TRAJECTORY_FILE};
+use super::folder::{CONTACT_POINTS_FILE, CONTACTS_FILE, ENERGY_FILE, RunFolder, TRAJECTORY_FILE};
 use super::frame_buffers::FrameBuffers;
 use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
 use crate::page::BodyFrame;
@@ -19,6 +22,8 @@ pub(super) struct RecordedRows {
     pub energy_bytes: u64,
     /// Length of `contacts.csv` up to the checkpoint (bytes).
     pub contacts_bytes: u64,
+    /// Length of `contact_points.csv` up to the checkpoint (bytes), if the scene asks for it.
+    pub contact_points_bytes: Option<u64>,
     /// The frames, for the pictures and the page.
     pub frames: FrameBuffers,
 }
@@ -74,8 +79,33 @@ impl RecordedRows {
         // if the first frame is after the checkpoint, its row was read but is written again
         let energy_bytes = if first > last { energy.header_bytes } else { energy.bytes_read };
         let (trajectory_bytes, contacts_bytes) = (trajectory.bytes_read, contacts.bytes_used);
-        Ok(Some(Self { trajectory_bytes, energy_bytes, contacts_bytes, frames }))
+        let contact_points_bytes = if scene.output.contact_points {
+            Some(contact_points_bytes(folder, world.time())?)
+        } else {
+            None
+        };
+        Ok(Some(Self {
+            trajectory_bytes,
+            energy_bytes,
+            contacts_bytes,
+            contact_points_bytes,
+            frames,
+        }))
     }
+}
+
+/// Length of the rows of `contact_points.csv` up to `time` (s). Those after it may be damaged.
+fn contact_points_bytes(folder: &RunFolder, time: f64) -> Result<u64, RowError> {
+    let path = folder.file_path(CONTACT_POINTS_FILE);
+    let mut rows = CsvReader::open(path, CONTACT_POINTS_HEADER)?;
+    let mut bytes = rows.header_bytes;
+    while let Ok(Some(row)) = rows.next_row() {
+        match parse_contact_point_time(&row) {
+            Some(of_row) if of_row <= time => bytes = rows.bytes_read,
+            _ => break,
+        }
+    }
+    Ok(bytes)
 }
 
 /// Reads one frame: a row of `trajectory.csv` per body, and the rows of `contacts.csv` it has.

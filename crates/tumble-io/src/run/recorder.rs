@@ -6,11 +6,12 @@ use std::time::{Duration, Instant};
 
 use tumble::{State, World};
 
+use super::contact_points::{CONTACT_POINTS_HEADER, ContactNames};
 use super::energy_ledger::{EnergyColumns, energy_row};
 use super::error::RunError;
 use super::folder::{
-    CHECKPOINT_FILE, CONTACTS_FILE, ENERGY_FILE, ENERGY_PLOT_FILE, MOTION_PAGE_FILE,
-    MOTION_PICTURE_FILE, RunFolder, TRAJECTORY_FILE,
+    CHECKPOINT_FILE, CONTACT_POINTS_FILE, CONTACTS_FILE, ENERGY_FILE, ENERGY_PLOT_FILE,
+    MOTION_PAGE_FILE, MOTION_PICTURE_FILE, RunFolder, TRAJECTORY_FILE,
 };
 use super::frame_buffers::{FrameBuffers, picture_frame};
 use super::picture_input::motion_picture;
@@ -53,10 +54,15 @@ impl<'a> Recorder<'a> {
             trajectory: create(TRAJECTORY_FILE, TRAJECTORY_HEADER)?,
             energy: create(ENERGY_FILE, &columns.header())?,
             contacts: create(CONTACTS_FILE, CONTACTS_HEADER)?,
+            contact_points: if scene.output.contact_points {
+                Some(create(CONTACT_POINTS_FILE, CONTACT_POINTS_HEADER)?)
+            } else {
+                None
+            },
             columns,
         };
         let frames = FrameBuffers::new(world.body_count());
-        let writer = RunWriter::start(folder, files, frames, body_names(world));
+        let writer = RunWriter::start(folder, files, frames, names(scene, world));
         Ok(Self::new(folder, writer, scene_toml, energy_start))
     }
 
@@ -68,7 +74,7 @@ impl<'a> Recorder<'a> {
         (scene, world): (&Scene, &World),
         (scene_toml, energy_start): (String, f64),
     ) -> Result<Self, RunError> {
-        let RecordedRows { trajectory_bytes, energy_bytes, contacts_bytes, frames } = recorded;
+        let RecordedRows { frames, .. } = recorded;
         let open = |name, length| {
             if source.is_same_as(folder.path()) {
                 return folder.append_to_file(name, length);
@@ -80,12 +86,16 @@ impl<'a> Recorder<'a> {
             Ok(copy)
         };
         let files = CsvFiles {
-            trajectory: open(TRAJECTORY_FILE, trajectory_bytes)?,
-            energy: open(ENERGY_FILE, energy_bytes)?,
-            contacts: open(CONTACTS_FILE, contacts_bytes)?,
+            trajectory: open(TRAJECTORY_FILE, recorded.trajectory_bytes)?,
+            energy: open(ENERGY_FILE, recorded.energy_bytes)?,
+            contacts: open(CONTACTS_FILE, recorded.contacts_bytes)?,
+            contact_points: match recorded.contact_points_bytes {
+                Some(length) => Some(open(CONTACT_POINTS_FILE, length)?),
+                None => None,
+            },
             columns: EnergyColumns::new(scene),
         };
-        let writer = RunWriter::start(folder, files, frames, body_names(world));
+        let writer = RunWriter::start(folder, files, frames, names(scene, world));
         Ok(Self::new(folder, writer, scene_toml, energy_start))
     }
 
@@ -103,7 +113,8 @@ impl<'a> Recorder<'a> {
     pub fn record_frame(&mut self, world: &World) -> Result<(), RunError> {
         let row = self.energy_row(world)?;
         let bodies = BodyFrame::all(world).collect();
-        self.writer.write(RunFrame { step: world.state().step, row, bodies })
+        let contacts = world.contacts();
+        self.writer.write(RunFrame { step: world.state().step, row, bodies, contacts })
     }
 
     /// The current row of the energy ledger; an error if the energy is not finite.
@@ -153,8 +164,9 @@ impl<'a> Recorder<'a> {
     }
 }
 
-fn body_names(world: &World) -> Vec<String> {
-    world.bodies().map(|body| body.name().to_owned()).collect()
+fn names(scene: &Scene, world: &World) -> ContactNames {
+    let bodies = world.bodies().map(|body| body.name().to_owned()).collect();
+    ContactNames { bodies, walls: scene.wall_names() }
 }
 
 fn write_error(folder: &RunFolder, name: &str, error: io::Error) -> RunError {

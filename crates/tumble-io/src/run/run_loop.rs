@@ -53,7 +53,8 @@ pub(super) struct RunLoop<'a> {
 
 impl<'a> RunLoop<'a> {
     /// Prepares the loop. The caller has already recorded the current state if it is a frame.
-    pub fn new(scene: Scene, world: World, recorder: Recorder<'a>) -> Self {
+    pub fn new(scene: Scene, mut world: World, recorder: Recorder<'a>) -> Self {
+        world.keep_contacts(scene.output.contact_points);
         let first_step = world.state().step;
         let (stepping_time, last_valid) = (Duration::ZERO, State::default());
         Self { scene, world, recorder, first_step, stepping_time, last_valid }

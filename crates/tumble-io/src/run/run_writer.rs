@@ -6,10 +6,13 @@ use std::io::{self, BufWriter, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 
+use tumble::Contact;
+
+use super::contact_points::{ContactNames, write_contact_points};
 use super::energy_ledger::EnergyColumns;
 use super::energy_ledger::write_energy;
 use super::error::RunError;
-use super::folder::{CONTACTS_FILE, ENERGY_FILE, RunFolder, TRAJECTORY_FILE};
+use super::folder::{CONTACT_POINTS_FILE, CONTACTS_FILE, ENERGY_FILE, RunFolder, TRAJECTORY_FILE};
 use super::frame_buffers::FrameBuffers;
 use super::trajectory::{write_contacts, write_frame};
 use crate::page::BodyFrame;
@@ -26,6 +29,8 @@ pub(super) struct CsvFiles {
     pub trajectory: BufWriter<File>,
     pub energy: BufWriter<File>,
     pub contacts: BufWriter<File>,
+    /// `contact_points.csv`, if the scene asks for it.
+    pub contact_points: Option<BufWriter<File>>,
     /// The columns of `energy.csv`.
     pub columns: EnergyColumns,
 }
@@ -35,6 +40,8 @@ pub(super) struct RunFrame {
     pub step: u64,
     pub row: EnergyRow,
     pub bodies: Vec<BodyFrame>,
+    /// The contacts of the latest step, if they are recorded.
+    pub contacts: Vec<Contact>,
 }
 
 enum Request {
@@ -52,12 +59,12 @@ pub(super) struct RunWriter {
 }
 
 impl RunWriter {
-    /// Starts the thread. `names` are the names of the bodies, in order.
+    /// Starts the thread. `names` are the names of bodies and walls, in order.
     pub fn start(
         folder: &RunFolder,
         files: CsvFiles,
         frames: FrameBuffers,
-        names: Vec<String>,
+        names: ContactNames,
     ) -> Self {
         let (requests, received) = sync_channel(CHANNEL_CAPACITY);
         let worker = Worker { folder: folder.clone(), files, frames, names };
@@ -70,9 +77,9 @@ impl RunWriter {
     /// # Errors
     /// [`RunError::Write`] when an earlier frame could not be written.
     pub fn write(&mut self, frame: RunFrame) -> Result<(), RunError> {
-        let bodies = frame.bodies.len().max(1);
+        let rows = (frame.bodies.len() + frame.contacts.len()).max(1);
         self.batch.push(frame);
-        if self.batch.len() * bodies >= BATCH_BODIES { self.send_batch() } else { Ok(()) }
+        if self.batch.len() * rows >= BATCH_BODIES { self.send_batch() } else { Ok(()) }
     }
 
     fn send_batch(&mut self) -> Result<(), RunError> {
@@ -138,7 +145,7 @@ struct Worker {
     folder: RunFolder,
     files: CsvFiles,
     frames: FrameBuffers,
-    names: Vec<String>,
+    names: ContactNames,
 }
 
 impl Worker {
@@ -160,15 +167,20 @@ impl Worker {
     }
 
     fn write(&mut self, frame: RunFrame) -> Result<(), RunError> {
-        let RunFrame { step, row, bodies } = frame;
-        let CsvFiles { trajectory, energy, contacts, columns } = &mut self.files;
+        let RunFrame { step, row, bodies, contacts: listed } = frame;
+        let CsvFiles { trajectory, energy, contacts, contact_points, columns } = &mut self.files;
+        let names = &self.names.bodies;
         let failed = |name| move |error| (name, error);
-        write_frame(trajectory, row.time, &self.names, &bodies)
+        write_frame(trajectory, row.time, names, &bodies)
             .map_err(failed(TRAJECTORY_FILE))
             .and_then(|()| write_energy(energy, &row, *columns).map_err(failed(ENERGY_FILE)))
             .and_then(|()| {
-                write_contacts(contacts, row.time, &self.names, &bodies)
-                    .map_err(failed(CONTACTS_FILE))
+                write_contacts(contacts, row.time, names, &bodies).map_err(failed(CONTACTS_FILE))
+            })
+            .and_then(|()| match contact_points {
+                Some(file) => write_contact_points(file, row.time, &self.names, &listed)
+                    .map_err(failed(CONTACT_POINTS_FILE)),
+                None => Ok(()),
             })
             .map_err(|(name, error)| RunError::Write(self.folder.file_path(name), error))?;
         self.frames.record(step, &row, bodies);
@@ -183,10 +195,11 @@ impl Worker {
         &mut self,
         apply: impl Fn(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), RunError> {
-        let CsvFiles { trajectory, energy, contacts, .. } = &mut self.files;
+        let CsvFiles { trajectory, energy, contacts, contact_points, .. } = &mut self.files;
         let files =
             [(TRAJECTORY_FILE, trajectory), (ENERGY_FILE, energy), (CONTACTS_FILE, contacts)];
-        for (name, file) in files {
+        let if_asked = contact_points.iter_mut().map(|file| (CONTACT_POINTS_FILE, file));
+        for (name, file) in files.into_iter().chain(if_asked) {
             apply(file).map_err(|error| RunError::Write(self.folder.file_path(name), error))?;
         }
         Ok(())

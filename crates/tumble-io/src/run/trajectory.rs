@@ -63,6 +63,12 @@ pub(crate) fn write_row(
         out.write_all(b",")?;
         out.write_all(csv_field(body).as_bytes())?;
     }
+    write_numbers(out, numbers)
+}
+
+/// Writes the numbers at the end of a row, each after a comma.
+pub(super) fn write_numbers(out: &mut impl Write, numbers: &[f64]) -> io::Result<()> {
+    let mut shortest = zmij::Buffer::new();
     for &number in numbers {
         out.write_all(b",")?;
         out.write_all(shortest.format(number).as_bytes())?;
@@ -72,7 +78,7 @@ pub(crate) fn write_row(
 
 /// A text as a field of CSV (RFC 4180): in quotes, with doubled quotes, if it would not be one field
 /// without them.
-fn csv_field(text: &str) -> Cow<'_, str> {
+pub(super) fn csv_field(text: &str) -> Cow<'_, str> {
     if text.contains([',', '"', '\r', '\n']) {
         Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
     } else {

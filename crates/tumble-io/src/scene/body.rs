@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use tumble::{DVec3, MassModel, Sampling};
+use tumble::{DMat3, DVec3, MassModel, Sampling};
 
 use super::common::{material, orientation};
 use super::description::{BodyScene, Copies, Geometry, MASS_MODELS, MassScene, MeshScene};
@@ -55,6 +55,8 @@ pub fn body(reader: Reader, index: usize) -> BodyScene {
         sampling: sampling(&reader),
         mass_model: mass_model(&reader),
         mass: mass(&reader),
+        center_of_mass: reader.vector("center_of_mass"),
+        inertia: inertia(&reader),
         position: reader.vector("position"),
         orientation: orientation(&reader),
         initial_velocity: velocity,
@@ -140,6 +142,20 @@ fn mass(reader: &Reader) -> MassScene {
     let total = reader.number("mass", Range::Positive).map(MassScene::Total);
     let density = reader.number("density", Range::Positive).map(MassScene::Density);
     particle.or(total).or(density).unwrap_or(MassScene::Particle(1.0))
+}
+
+/// `inertia`: rows of a tensor, which needs `mass`.
+fn inertia(reader: &Reader) -> Option<DMat3> {
+    let rows = reader.matrix("inertia");
+    if reader.has("inertia") && !reader.has("mass") {
+        let message = match MASS_KEYS.iter().find(|key| reader.has(key)) {
+            Some(key) => format!("only goes with `mass` (kg), but the mass is given by `{key}`"),
+            None => "needs `mass` (kg), the mass of the body that has this inertia".to_owned(),
+        };
+        let place = reader.place_of("inertia");
+        reader.missing(&["mass"], Problem::new(place, reader.key("inertia"), message));
+    }
+    rows.map(|rows| DMat3::from_cols_array_2d(&rows).transpose())
 }
 
 fn copies(reader: Reader) -> Option<Copies> {

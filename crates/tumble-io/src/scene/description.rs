@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use tumble::{
-    CentralGravity, DQuat, DVec3, Integrator, Joint, Load, MassModel, Material, MaterialOverride, Motion, Overlaps, Prescribed,
-    Primitive, Sampling, SolverSettings, Surface, WallBox, WallPlane,
+    CentralGravity, DMat3, DQuat, DVec3, Integrator, Joint, Load, MassModel, Material,
+    MaterialOverride, Motion, Overlaps, Prescribed, Primitive, Sampling, SolverSettings, Surface,
+    WallBox, WallPlane,
 };
 
 use crate::mesh::{LengthUnit, Repair, Weld};
@@ -89,6 +90,10 @@ pub struct BodyScene {
     pub mass_model: MassModel,
     /// The mass.
     pub mass: MassScene,
+    /// Its centre of mass, in the coordinates of the geometry, before `scale`; `None`: that of the mass model.
+    pub center_of_mass: Option<DVec3>,
+    /// Its inertia tensor about its centre of mass, in the axes of the geometry (kg·m²); `None`: that of the mass model.
+    pub inertia: Option<DMat3>,
     /// Centre of mass at the start (m); `None`: that of the coordinates.
     pub position: Option<DVec3>,
     /// Orientation at the start.
@@ -281,11 +286,13 @@ pub struct OutputScene {
     pub interval: f64,
     /// Simulated time between checkpoints (s), in addition to those by wall-clock time.
     pub checkpoint_interval: Option<f64>,
+    /// Whether `contact_points.csv` is written.
+    pub contact_points: bool,
 }
 
 impl Default for OutputScene {
     fn default() -> Self {
-        Self { interval: 1.0 / 60.0, checkpoint_interval: None }
+        Self { interval: 1.0 / 60.0, checkpoint_interval: None, contact_points: false }
     }
 }
 

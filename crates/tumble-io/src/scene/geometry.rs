@@ -21,9 +21,46 @@ pub struct ShapeAndMass {
     pub mass: f64,
 }
 
-/// Builds the shape of a body. Relative mesh paths start at `folder`. The hash of the mesh is compared with that of the scene, if it has
+/// Builds the shape of a body, with its own mass properties if it has any. Relative mesh paths start at `folder`. The hash of the mesh is compared with that of the scene, if it has
 /// one, and written into the scene.
 pub fn build_shape(body: &mut BodyScene, folder: &Path) -> Result<ShapeAndMass, GeometryError> {
+    let of_geometry = shape_of_geometry(body, folder)?;
+    with_given_mass(body, of_geometry)
+}
+
+/// Replaces the centre of mass and the inertia by those that the body has of its own.
+fn with_given_mass(body: &BodyScene, built: ShapeAndMass) -> Result<ShapeAndMass, GeometryError> {
+    let ShapeAndMass { shape, mass } = built;
+    if body.center_of_mass.is_none() && body.inertia.is_none() {
+        return Ok(ShapeAndMass { shape, mass });
+    }
+    let centre = body.center_of_mass.map_or(shape.centre(), |centre| centre * body.scale);
+    let gyration = body.inertia.map_or(shape.gyration(), |inertia| inertia * (1.0 / mass));
+    let key = if body.inertia.is_some() { "inertia" } else { "center_of_mass" };
+    let shape = shape.with_distribution(centre, gyration).map_err(|cause| match cause {
+        ShapeError::Impossible { moments } => {
+            let [x, y, z] = (moments * mass).to_array();
+            let message = format!(
+                "is that of no body: its principal moments are {x:.4e}, {y:.4e} and {z:.4e} kg·m², \
+                 but each is at least 0 and at most the sum of the others"
+            );
+            error(key, message)
+        }
+        ShapeError::NoInertia { .. } if body.inertia.is_none() => {
+            error(key, format!("needs `mass` and `inertia` beside it: {cause}"))
+        }
+        ShapeError::Asymmetric => {
+            error(key, "must be symmetric: row i, column j is row j, column i")
+        }
+        ShapeError::TooLarge => {
+            error(key, "is so large that the motion cannot be computed in finite numbers")
+        }
+        _ => error(key, format!("cannot work: {cause}")),
+    })?;
+    Ok(ShapeAndMass { shape: Arc::new(shape), mass })
+}
+
+fn shape_of_geometry(body: &mut BodyScene, folder: &Path) -> Result<ShapeAndMass, GeometryError> {
     let mut mesh = load_points(&mut body.geometry, folder)?;
     for vertex in &mut mesh.vertices {
         *vertex *= body.scale;

@@ -63,7 +63,7 @@ pub fn joint(reader: Reader, index: usize) -> Option<JointScene> {
         damping: number("damping").unwrap_or(0.0),
         length: number("length"),
         until: reader.number("until", Range::Any),
-        contact: reader.boolean("contact").unwrap_or(false),
+        contact: reader.switch("contact").unwrap_or(false),
     };
     reader.finish();
     kind.map(|_| JointScene { joint, chain })

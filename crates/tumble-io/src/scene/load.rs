@@ -279,7 +279,8 @@ fn owners(scene: &Scene) -> BTreeMap<String, usize> {
 /// A key that is equal for bodies with equal shape, mass and surface.
 fn shape_key(body: &BodyScene) -> String {
     let BodyScene { geometry, scale, sampling, mass_model, mass, surface, .. } = body;
-    format!("{geometry:?} {scale:?} {sampling:?} {mass_model:?} {mass:?} {surface:?}")
+    let given = (body.center_of_mass, body.inertia);
+    format!("{geometry:?} {scale:?} {sampling:?} {mass_model:?} {mass:?} {given:?} {surface:?}")
 }
 
 /// The centre of mass of the body, or of its copies, by name.

@@ -68,7 +68,9 @@ pub fn scene(root: &Node, name: String, problems: &RefCell<Vec<Problem>>) -> (Sc
         joints: joints(&top),
         loads: top.tables("load").into_iter().map(loads::load).collect(),
         central_gravity: top.table("central_gravity").and_then(loads::central_gravity),
-        output: top.table("output").map_or_else(OutputScene::default, output),
+        output: top
+            .table("output")
+            .map_or_else(OutputScene::default, |table| output(table, top.has("energy_tolerance"))),
         force: false,
     };
     top.finish();
@@ -165,10 +167,15 @@ fn wall(reader: Reader) -> Option<WallScene> {
     plane.map(|plane| WallScene { plane, material })
 }
 
-fn output(reader: Reader) -> OutputScene {
+fn output(reader: Reader, has_tolerance: bool) -> OutputScene {
     let default = OutputScene::default();
     let interval = reader.number("interval", Range::Positive).unwrap_or(default.interval);
     let checkpoint_interval = reader.number("checkpoint_interval", Range::Positive);
+    let contact_points = reader.switch("contact_points").unwrap_or_default();
+    if contact_points && has_tolerance {
+        let message = "cannot stand beside `energy_tolerance`: a step in parts has no kick at which its contacts are";
+        reader.problem("contact_points", message);
+    }
     reader.finish();
-    OutputScene { interval, checkpoint_interval }
+    OutputScene { interval, checkpoint_interval, contact_points }
 }

@@ -195,6 +195,22 @@ impl<'a> Reader<'a> {
         self.numbers::<3>(key, Range::Finite).map(DVec3::from_array)
     }
 
+    /// Three rows of three finite numbers.
+    pub fn matrix(&self, key: &'static str) -> Option<[[f64; 3]; 3]> {
+        let node = self.get(key)?;
+        let rows = match &node.value {
+            Value::Array(items) => items.iter().map(numbers::<3>).collect::<Option<Vec<_>>>(),
+            _ => None,
+        };
+        let rows: Option<[[f64; 3]; 3]> = rows.and_then(|rows| rows.try_into().ok());
+        let rows = rows.filter(|rows| rows.iter().flatten().all(|x| x.is_finite()));
+        if rows.is_none() {
+            let message = "must be three rows of three finite numbers, [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]";
+            self.report(Problem::new(node.place.clone(), self.key(key), message));
+        }
+        rows
+    }
+
     /// An array of points.
     pub fn points(&self, key: &'static str) -> Option<Vec<DVec3>> {
         let node = self.get(key)?;
@@ -269,10 +285,10 @@ impl<'a> Reader<'a> {
     }
 
     /// A boolean.
-    pub fn boolean(&self, key: &'static str) -> Option<bool> {
+    pub fn switch(&self, key: &'static str) -> Option<bool> {
         let node = self.get(key)?;
-        if let Value::Boolean(value) = node.value {
-            return Some(value);
+        if let Value::Boolean(boolean) = node.value {
+            return Some(boolean);
         }
         self.wrong_type(key, node, "true or false");
         None
@@ -448,7 +464,7 @@ fn numbers<const N: usize>(node: &Node) -> Option<[f64; N]> {
 }
 
 /// Names in other programs, and the names of the keys here.
-const ALIASES: [(&str, &str); 26] = [
+const ALIASES: [(&str, &str); 30] = [
     ("friction", "friction_stiffness"),
     ("mu", "friction_stiffness"),
     ("friction_coefficient", "friction_stiffness"),
@@ -467,6 +483,10 @@ const ALIASES: [(&str, &str); 26] = [
     ("angular_velocity", "initial_angular_velocity"),
     ("rotation", "orientation"),
     ("quaternion", "orientation"),
+    ("com", "center_of_mass"),
+    ("centre_of_mass", "center_of_mass"),
+    ("inertia_tensor", "inertia"),
+    ("moments", "inertia"),
     ("points", "particles"),
     ("file", "mesh"),
     ("e", "restitution"),

@@ -49,6 +49,9 @@ impl Scene {
             if let Some(interval) = self.output.checkpoint_interval {
                 put(&mut output, "checkpoint_interval", interval);
             }
+            if self.output.contact_points {
+                put(&mut output, "contact_points", true);
+            }
             output
         });
         if let Some(own) = &self.box_walls {
@@ -83,6 +86,16 @@ impl Scene {
             .iter()
             .flat_map(|own| own.walls.planes().into_iter().map(|plane| (plane, own.material)));
         of_box.chain(self.walls.iter().map(|wall| (wall.plane, wall.material))).collect()
+    }
+
+    /// The names of all walls, in the order of [`Scene::all_walls`]: a face of the box as in `open`, a single wall as `wall 0`, …
+    pub fn wall_names(&self) -> Vec<String> {
+        let open = self.box_walls.iter().map(|own| own.walls.open);
+        let faces = open.flat_map(|open| {
+            let faces = WallBox::FACES.iter().zip(open).filter(|(_, is_open)| !is_open);
+            faces.map(|(face, _)| (*face).to_owned())
+        });
+        faces.chain((0..self.walls.len()).map(|index| format!("wall {index}"))).collect()
     }
 
     /// The names of all bodies, copies included, in the order of the world.
@@ -145,6 +158,13 @@ fn body(body: &BodyScene, is_joined: bool) -> Table {
         MassScene::Particle(mass) => put(&mut table, "particle_mass", mass),
         MassScene::Total(mass) => put(&mut table, "mass", mass),
         MassScene::Density(density) => put(&mut table, "density", density),
+    }
+    if let Some(centre) = body.center_of_mass {
+        put(&mut table, "center_of_mass", vector(centre));
+    }
+    if let Some(inertia) = body.inertia {
+        let rows = inertia.transpose().to_cols_array_2d();
+        put(&mut table, "inertia", rows.map(|row| row.to_vec()).to_vec());
     }
     if let Some(position) = body.position {
         put(&mut table, "position", vector(position));

@@ -86,6 +86,21 @@ impl BodyContacts {
         (poses, ContactResults { contacts, lists })
     }
 
+    /// The poses at the latest kick or query.
+    pub fn poses(&self) -> &[BodyPose] {
+        &self.poses
+    }
+
+    /// The contacts of the latest evaluation, chunk by chunk.
+    pub(super) fn chunks(&self) -> &[ChunkContacts] {
+        &self.contacts
+    }
+
+    /// The neighbour list of a chunk.
+    pub(super) fn neighbours(&self, chunk: usize) -> &ChunkNeighbours {
+        &self.lists.chunks[chunk]
+    }
+
     /// Finds all contacts and computes their forces at the velocities of the poses, on all threads. With `PREDICT` the forces serve
     /// only to predict velocities; [`Self::evaluate_again`] must follow.
     pub fn evaluate<const PREDICT: bool>(

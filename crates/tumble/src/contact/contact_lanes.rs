@@ -39,9 +39,9 @@ pub(super) struct ContactLanes {
     pub depth: [f64; LANES],
     /// For the implicit solver: the gap, minus the depth, of contacts within reach; infinite in other lanes (m).
     pub gap: [f64; LANES],
-    /// For the implicit solver: torque on the first body in addition to that of the force, over the force, and the index of the
-    /// spring of the latest kick, or [`NO_SPRING`].
+    /// Torque on the first body in addition to that of the force (N·m); for the implicit solver, over the force (m).
     pub couple: Columns,
+    /// For the implicit solver: index of the spring of the latest kick, or [`NO_SPRING`].
     pub spring: [u32; LANES],
     /// From the centre of mass of the first body to the point of contact (m).
     pub arm: Columns,

@@ -31,6 +31,7 @@ pub(crate) mod gather;
 mod geometry;
 pub(crate) mod initial_overlap;
 mod law;
+mod listing;
 mod mesh_cache;
 mod narrow_phase;
 mod neighbour_list;

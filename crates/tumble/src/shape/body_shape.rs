@@ -61,6 +61,13 @@ pub enum ShapeError {
         /// The moments for unit mass (m²), in ascending order.
         moments: DVec3,
     },
+    /// A given inertia tensor is not symmetric.
+    Asymmetric,
+    /// There is no moment of inertia about an axis through the centre of mass from which a particle is away.
+    NoInertia {
+        /// Direction of the axis, of length 1.
+        axis: DVec3,
+    },
 }
 
 impl std::fmt::Display for ShapeError {
@@ -80,6 +87,13 @@ impl std::fmt::Display for ShapeError {
                 f,
                 "no body has the moments of inertia {:e}, {:e} and {:e} m² for unit mass; each is at least 0 and at most the sum of the others",
                 m.x, m.y, m.z
+            ),
+            Self::Asymmetric => write!(f, "an inertia tensor is symmetric, but this one is not"),
+            Self::NoInertia { axis: a } => write!(
+                f,
+                "there is no moment of inertia about the axis ({:.3}, {:.3}, {:.3}) through the centre of mass, but particles away from it; \
+                 the moment must be above 0",
+                a.x, a.y, a.z
             ),
             Self::TooLarge => write!(
                 f,
@@ -195,6 +209,12 @@ impl Shape {
             particle_source: ParticleSource::Points,
             area_weights: None,
         })
+    }
+
+    /// The shape with its centre at `centre` (m) in the frame of the input of `other`, from which its particles come.
+    pub(super) fn described_as(self, other: &Self, centre: DVec3) -> Self {
+        let (particle_source, area_weights) = (other.particle_source, other.area_weights);
+        Self { centre, particle_source, area_weights, ..self }
     }
 
     /// The particles, with positions rᵢ in the body frame (m).

@@ -2,6 +2,7 @@
 
 mod area_weights;
 mod body_shape;
+mod given_mass;
 mod integrals;
 mod mass;
 mod mesh;

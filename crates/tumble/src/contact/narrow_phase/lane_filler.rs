@@ -97,12 +97,12 @@ impl<'a> LaneFiller<'a> {
             lanes.has_patch = false;
         }
         poses.write_law(pair, point, lane, lanes);
-        if self.context.is_solved {
-            set(&mut lanes.couple, lane, geometry.couple);
-        } else if geometry.couple != DVec3::ZERO {
-            let couple = geometry.couple * lanes.stiffness[lane];
+        let mut couple = geometry.couple;
+        if !self.context.is_solved && couple != DVec3::ZERO {
+            couple *= lanes.stiffness[lane];
             pairs[candidate.pair as usize].add_couple(couple);
         }
+        set(&mut lanes.couple, lane, couple);
         lanes.stiffness[lane] *= geometry.weight;
         lanes.damping[lane] *= geometry.weight;
         poses.write_input(geometry, lane, input);

@@ -3,6 +3,7 @@
 use std::sync::Mutex;
 
 use fearless_simd::{Level, Simd, dispatch};
+use glam::DVec3;
 
 use super::super::chunk_contacts::ChunkContacts;
 use super::super::neighbour_list::NeighbourLists;
@@ -97,6 +98,18 @@ impl Solver {
         self.store(found, state, &mut totals);
         state.totals += totals;
         outcome
+    }
+
+    /// The impulses of the latest solution on the first bodies, along and across the normals (N·s), each with chunk, lanes and lane of its
+    /// contact.
+    pub(in crate::contact) fn impulses(
+        &self,
+    ) -> impl Iterator<Item = ([usize; 3], f64, DVec3)> + '_ {
+        self.places.iter().enumerate().filter_map(|(contact, place)| {
+            let (normal, tangential) = self.rows.impulses(contact)?;
+            let place = [place.chunk, place.lanes, place.lane].map(|index| index as usize);
+            Some((place, normal, tangential))
+        })
     }
 
     /// Fills the rows, and computes their coefficients.

@@ -209,6 +209,14 @@ impl Rows {
         Some((&rows[row as usize], &laws[row as usize], lane as usize))
     }
 
+    /// The impulses of a contact on its first body, along and across the normal (N·s).
+    pub fn impulses(&self, contact: usize) -> Option<(f64, DVec3)> {
+        let RowPlace { block, row, lane } = self.places[contact];
+        let block = self.blocks[block as usize].lock().ok()?;
+        let (row, lane) = (block.rows.get(row as usize)?, lane as usize);
+        Some((row.impulse[lane], vector(&row.tangential_impulse, lane)))
+    }
+
     /// The blocks in order.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut Block> {
         self.blocks[..self.used].iter_mut().filter_map(|block| block.get_mut().ok())

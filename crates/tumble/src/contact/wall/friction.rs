@@ -9,6 +9,7 @@ use std::cmp::Ordering;
 use fearless_simd::{Simd, dispatch, f64x8, prelude::*};
 use glam::DVec3;
 
+use super::listing::WallParticle;
 use super::near_wall::{NearWall, WallPatch};
 use crate::contact::Kick;
 use crate::contact::law::coulomb::{dashpot_fraction, slip};
@@ -108,6 +109,28 @@ impl FrictionContacts {
             dispatch!(kinematics.level, simd => evaluation.add_all(simd, lanes, forces, &mut self.slip_loss));
         }
         forces.slip_loss = self.released + self.slip_loss;
+    }
+
+    /// Calls `add` with each particle behind these walls, at the velocities of `kinematics`: each is evaluated as in
+    /// [`Self::add_forces`], with no other beside it.
+    pub fn list(&self, model: &Model, kinematics: &Kinematics, add: &mut impl FnMut(WallParticle)) {
+        let is_first_kick = self.is_first_kick;
+        for (contacts, &law) in self.contacts.chunk_by(|a, b| a.wall == b.wall).zip(&self.laws) {
+            let wall = contacts[0].wall as usize;
+            let normal = model.walls[wall].normal;
+            let evaluation = WallEvaluation { kinematics, normal, law, is_first_kick };
+            for lanes in contacts {
+                for lane in 0..lanes.count as usize {
+                    let mut alone = [lanes.clone()];
+                    alone[0].depth = [0.0; LANES];
+                    alone[0].depth[lane] = lanes.depth[lane];
+                    let (mut forces, mut slip_loss) = (BodyForces::default(), 0.0);
+                    dispatch!(kinematics.level, simd => evaluation.add_all(simd, &mut alone, &mut forces, &mut slip_loss));
+                    let (arm, depth) = (vector(&lanes.arm, lane), lanes.depth[lane]);
+                    add(WallParticle { wall, arm, depth, wrench: forces.contact() });
+                }
+            }
+        }
     }
 
     /// Appends the springs after the latest evaluation.

@@ -1,5 +1,6 @@
 //! Normal springs and dashpots at walls without friction, as sums over the particle tree.
 
+use super::listing::WallParticle;
 use super::near_wall::{NearWall, WallPatch};
 use crate::kinematics::Kinematics;
 use crate::shape::AffineSums;
@@ -53,6 +54,33 @@ impl NormalSprings {
                 };
                 let law = damped_law(&wall, law, &patch, kinematics, h);
                 springs.damped.push(DampedWall { wall, law, spring });
+            }
+        }
+    }
+
+    /// Calls `add` with each particle behind these walls, at the velocities of `kinematics`.
+    pub fn list(&self, model: &Model, kinematics: &Kinematics, add: &mut impl FnMut(WallParticle)) {
+        let particles = kinematics.body.shape.particles();
+        let mut damped = self.damped.iter();
+        let mut slots = Vec::new();
+        for (index, (wall, law)) in model.walls.iter().zip(&kinematics.body.contacts).enumerate() {
+            let near = NearWall::new(wall, kinematics).filter(|_| law.friction == 0.0);
+            let Some(near) = near else { continue };
+            if near.depth_sums(kinematics).sum <= 0.0 {
+                continue;
+            }
+            let law = if law.is_damped() { damped.next().map(|wall| &wall.law) } else { Some(law) };
+            let Some(law) = law else { continue };
+            let force = near.spring_and_dashpot(kinematics, law);
+            slots.clear();
+            particles.collect_positive_slots(kinematics.level, &near.depth, &mut slots);
+            for &slot in &slots {
+                let r = particles.at(slot);
+                let arm = kinematics.rotation * r;
+                let weight = particles.weight(particles.index_of_slot(slot) as usize);
+                let force = near.normal * (force.at(r).max(0.0) * weight);
+                let wrench = Wrench { force, torque: arm.cross(force) };
+                add(WallParticle { wall: index, arm, depth: near.depth.at(r), wrench });
             }
         }
     }

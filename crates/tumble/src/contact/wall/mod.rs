@@ -10,11 +10,13 @@
 
 mod friction;
 mod frictionless;
+mod listing;
 mod near_wall;
 #[cfg(test)]
 mod tests;
 
 use self::frictionless::NormalSprings;
+pub(crate) use self::listing::WallKick;
 use self::near_wall::NearWall;
 use crate::contact::Kick;
 use crate::kinematics::Kinematics;
