@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use tumble_io::on_one_line;
+use tumble_io::plot::EnergyRow;
 use tumble_io::run::{FinishedRun, RunFolder, Summary};
 
 use crate::format::{columns, count, number};
@@ -10,7 +11,7 @@ use crate::format::{columns, count, number};
 /// The summary of a run as two columns.
 pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
     let (s, e) = (&finished.summary, &finished.energy);
-    let dissipated = e.drag + e.dashpot + e.slip;
+    let dissipated = e.drag + e.dashpot + e.slip + e.joint_friction;
     // gravitational energy has an arbitrary zero, so that the total is no scale for the residual
     let scale = e.kinetic + e.elastic + dissipated;
     let relative = s.energy_residual / scale;
@@ -38,7 +39,7 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
                 number(e.elastic)
             ),
         ),
-        ("", format!("{} J dissipated", number(dissipated))),
+        ("", format!("{} J dissipated{}", number(dissipated), work(e))),
         ("residual", format!("{} J{share}", number(s.energy_residual))),
     ];
     rows.extend(solver(s).map(|text| ("solver", text)));
@@ -54,6 +55,17 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
     let warnings = warnings(s, relative).into_iter().chain(finished.warnings.iter().cloned());
     rows.extend(warnings.map(|warning| ("warning", warning)));
     columns(&rows)
+}
+
+/// What springs of joints hold, and what was put in, as far as there is any.
+fn work(energy: &EnergyRow) -> String {
+    let parts = [
+        (energy.spring, "in the springs of joints"),
+        (energy.motor, "put in by motors"),
+        (energy.work, "put in by prescribed motions and loads"),
+    ];
+    let parts = parts.into_iter().filter(|(value, _)| *value != 0.0);
+    parts.map(|(value, what)| format!(", {} J {what}", number(value))).collect()
 }
 
 /// Steps that take longer than this (s) are worth a comparison.

@@ -1,7 +1,7 @@
 //! One frame, as it is sent to pages.
 
 use tumble::World;
-use tumble_io::page::{BodyFrame, encode_frame};
+use tumble_io::page::{WorldFrame, encode_frame};
 use tumble_io::run::energy_row;
 
 use crate::Session;
@@ -11,7 +11,7 @@ pub fn record(session: &Session) -> Vec<u8> {
     let world = session.world();
     let row = energy_row(world.time(), &world.energy(), session.reference_energy());
     let mut record = Vec::new();
-    encode_frame(&mut record, world.state().step, &row, BodyFrame::all(world));
+    encode_frame(&mut record, world.state().step, &row, &WorldFrame::new(world));
     record
 }
 

@@ -107,7 +107,12 @@ impl ParameterList {
     /// Adds the initial state, scale, mass and contact parameters of a body.
     fn body(&mut self, table: &str, body: &BodyScene) {
         let key = |name: &str| format!("{table}.{name}");
-        self.vector(&key("initial_velocity"), body.initial_velocity.unwrap_or_default(), "m/s", 20.0);
+        self.vector(
+            &key("initial_velocity"),
+            body.initial_velocity.unwrap_or_default(),
+            "m/s",
+            20.0,
+        );
         let spin = body.initial_angular_velocity.unwrap_or_default();
         self.vector(&key("initial_angular_velocity"), spin, "rad/s", 200.0);
         if let Some(position) = body.position {

@@ -16,8 +16,8 @@ use self::body_model::Shared;
 use self::checks::{behind_walls, duplicate_names, overlaps};
 use crate::stage::DIVISIONS_AT_START;
 use crate::{
-    BuildError, BuildErrors, Integrator, Joints, Loads, MaterialOverride, Model, Overlaps, State, Surface,
-    WallPlane, World, critical_dt,
+    BuildError, BuildErrors, Integrator, Joints, Loads, MaterialOverride, Model, Overlaps, State,
+    Surface, WallPlane, World, critical_dt,
 };
 
 pub use self::body::Body;

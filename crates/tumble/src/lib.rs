@@ -101,7 +101,8 @@ pub use shape::{
 pub use stability::{CriticalStep, critical_dt};
 pub use stage::MouseSpring;
 pub use state::{
-    BodyState, ContactImpulse, ContactKind, FrictionSpring, JointState, PairSpring, RunTotals, State,
+    BodyState, ContactImpulse, ContactKind, FrictionSpring, JointState, PairSpring, RunTotals,
+    State,
 };
 pub use static_load::{SoftSprings, StaticLoad, static_loads};
 pub use surface::{Overlaps, Surface};

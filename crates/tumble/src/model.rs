@@ -8,7 +8,8 @@ use crate::flight::DragModes;
 use crate::shape::Shape;
 use crate::wall::WallPlane;
 use crate::{
-    BodyState, ContactLaw, ContactPoints, Joints, Loads, Motion, PairMaterial, Particles, SignedDistance, Surface,
+    BodyState, ContactLaw, ContactPoints, Joints, Loads, Motion, PairMaterial, Particles,
+    SignedDistance, Surface,
 };
 
 /// The time integrator.

@@ -124,7 +124,8 @@ fn implicit_step_together(
     let outcome = around_implicit_contact((model, state, scratch), part, before, |_| {});
     fly_after_kick(model, state, scratch, h);
     let has_failed = scratch.joints.failure.is_some();
-    outcome.map(|outcome| Outcome { has_converged: outcome.has_converged && !has_failed, ..outcome })
+    outcome
+        .map(|outcome| Outcome { has_converged: outcome.has_converged && !has_failed, ..outcome })
 }
 
 /// The same in sub-steps that bound the energy error. The builder allows it only without contact between bodies.

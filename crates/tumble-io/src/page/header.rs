@@ -6,7 +6,10 @@ use std::sync::Arc;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
-use tumble::{BodyModel, BodyView, DQuat, DVec3, Shape, WallBox, World};
+use tumble::{
+    BodyModel, BodyView, DQuat, DVec3, JointModel, Load, LoadAxes, LoadCourse, Motor, Shape,
+    WallBox, World,
+};
 
 use crate::appearance::{is_kinematic, particle_radius, surface_of};
 use crate::scene::Scene;
@@ -33,6 +36,8 @@ pub struct Header {
     interval: f64,
     shapes: Vec<ShapeHeader>,
     bodies: Vec<BodyHeader>,
+    joints: Vec<JointHeader>,
+    loads: Vec<LoadHeader>,
     walls: Vec<WallHeader>,
     #[serde(rename = "box")]
     box_walls: Option<BoxHeader>,
@@ -145,6 +150,8 @@ impl Header {
             interval: scene.output.interval,
             shapes,
             bodies: bodies.collect(),
+            joints: world.model().joints.list.iter().map(joint_header).collect(),
+            loads: world.model().loads.list.iter().map(load_header).collect(),
             walls: wall_headers(world),
             box_walls: scene.box_walls.as_ref().map(|box_walls| box_header(&box_walls.walls)),
             parameters: Vec::new(),
@@ -163,6 +170,78 @@ impl Header {
     pub fn to_json(&self) -> String {
         let json = serde_json::to_string(self).unwrap_or_default();
         json.replace('<', "\\u003c")
+    }
+}
+
+/// A joint, for drawing. Points and axes are in the axes of either body, from its centre of mass; of the world its own.
+#[derive(Clone, Debug, Serialize)]
+struct JointHeader {
+    name: String,
+    kind: &'static str,
+    /// Indices of both bodies; null is the world.
+    bodies: [Option<u32>; 2],
+    anchors: [[f64; 3]; 2],
+    /// The axis of a hinge or slider.
+    axes: Option<[[f64; 3]; 2]>,
+    /// Its motor.
+    motor: Option<&'static str>,
+    /// The length of a rope or of a spring without force (m).
+    length: Option<f64>,
+    /// The time at which it lets go (s).
+    until: Option<f64>,
+}
+
+fn joint_header(joint: &JointModel) -> JointHeader {
+    let axes = joint.axes.map(|axes| axes.x_axis.to_array());
+    JointHeader {
+        name: joint.name.clone(),
+        kind: joint.kind.name(),
+        bodies: joint.bodies,
+        anchors: joint.anchors.map(|anchor| anchor.to_array()),
+        axes: joint.kind.has_axis().then_some(axes),
+        motor: joint.motor.map(|motor| match motor {
+            Motor::Speed { .. } => "speed",
+            Motor::Position { .. } => "position",
+        }),
+        length: joint.kind.has_length().then_some(joint.start_length + joint.natural),
+        until: Some(joint.until).filter(|until| until.is_finite()),
+    }
+}
+
+/// A load, for drawing.
+#[derive(Clone, Debug, Serialize)]
+struct LoadHeader {
+    /// Index of the body.
+    body: u32,
+    force: [f64; 3],
+    torque: [f64; 3],
+    /// Where the force acts (m, body axes, from the centre of mass).
+    at: [f64; 3],
+    /// Whether force and torque turn with the body.
+    in_body_axes: bool,
+    /// Frequency (Hz) and phase (rad), if it is periodic.
+    periodic: Option<[f64; 2]>,
+    /// Times and forces, if there is a table.
+    table: Option<Vec<[f64; 4]>>,
+}
+
+fn load_header((body, load): &(u32, Load)) -> LoadHeader {
+    let (mut periodic, mut table) = (None, None);
+    match &load.course {
+        LoadCourse::Constant => {}
+        LoadCourse::Periodic { frequency, phase } => periodic = Some([*frequency, *phase]),
+        LoadCourse::Table(rows) => {
+            table = Some(rows.iter().map(|(t, f)| [*t, f.x, f.y, f.z]).collect());
+        }
+    }
+    LoadHeader {
+        body: *body,
+        force: load.force.to_array(),
+        torque: load.torque.to_array(),
+        at: load.at.to_array(),
+        in_body_axes: load.axes == LoadAxes::Body,
+        periodic,
+        table,
     }
 }
 

@@ -18,4 +18,4 @@ mod tests;
 
 pub use assemble::{live_html, motion_html};
 pub use header::{Header, IntegratorChoice, Parameter};
-pub use recording::{BodyFrame, Recording, encode_frame, record_size};
+pub use recording::{BodyFrame, Recording, WorldFrame, encode_frame, record_size};

@@ -1,6 +1,6 @@
 //! The frames of a run for the page, as binary records. Long runs are thinned out.
 
-use tumble::{DQuat, DVec3, World, Wrench};
+use tumble::{DQuat, DVec3, JointView, World, Wrench};
 
 use crate::plot::EnergyRow;
 
@@ -43,22 +43,35 @@ impl BodyFrame {
     }
 }
 
-/// Size of the record of one frame (bytes): thirteen `f64`, and 22 `f32` per body.
-pub fn record_size(body_count: usize) -> usize {
-    104 + 88 * body_count
+/// The bodies and joints of a world in a frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WorldFrame {
+    /// All bodies.
+    pub bodies: Vec<BodyFrame>,
+    /// All joints.
+    pub joints: Vec<JointView>,
+}
+
+impl WorldFrame {
+    /// The current state of a world.
+    pub fn new(world: &World) -> Self {
+        let joints = (0..world.joint_count()).map(|index| world.joint(index));
+        Self { bodies: BodyFrame::all(world).collect(), joints: joints.collect() }
+    }
+}
+
+/// Size of the record of one frame (bytes): thirteen `f64`, 22 `f32` per body, and 8 `f32` per joint.
+pub fn record_size(body_count: usize, joint_count: usize) -> usize {
+    104 + 88 * body_count + 32 * joint_count
 }
 
 /// Appends the record of one frame to `out`.
 ///
 /// All numbers are little-endian. As `f64`: time, step, and the energies kinetic, gravitational,
 /// elastic, drag, dashpot, slip, numerical, spring, joint friction, total and residual. Then as `f32` for each body: position, orientation
-/// w x y z, velocity, angular velocity, angular momentum, contact force and contact torque.
-pub fn encode_frame(
-    out: &mut Vec<u8>,
-    step: u64,
-    row: &EnergyRow,
-    bodies: impl Iterator<Item = BodyFrame>,
-) {
+/// w x y z, velocity, angular velocity, angular momentum, contact force and contact torque. Then as `f32` for each joint: force and
+/// torque on its first body, coordinate and rate.
+pub fn encode_frame(out: &mut Vec<u8>, step: u64, row: &EnergyRow, frame: &WorldFrame) {
     // the page computes the work, that of motors included, as the sum of the parts minus the total
     let EnergyRow { time, kinetic, gravitational, elastic, drag, .. } = *row;
     let EnergyRow { dashpot, slip, numerical, spring, joint_friction, total, residual, .. } = *row;
@@ -68,7 +81,7 @@ pub fn encode_frame(
     for number in [time, step as f64].into_iter().chain(ledger) {
         out.extend(number.to_le_bytes());
     }
-    for body in bodies {
+    for body in &frame.bodies {
         let q = body.orientation;
         write_f32(out, &body.position.to_array());
         write_f32(out, &[q.w, q.x, q.y, q.z]);
@@ -80,6 +93,11 @@ pub fn encode_frame(
             body.contact.torque,
         ];
         vectors.into_iter().for_each(|v| write_f32(out, &v.to_array()));
+    }
+    for JointView { wrench, coordinate, rate } in &frame.joints {
+        write_f32(out, &wrench.force.to_array());
+        write_f32(out, &wrench.torque.to_array());
+        write_f32(out, &[*coordinate, *rate]);
     }
 }
 
@@ -104,9 +122,9 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// An empty recording of a world with `body_count` bodies.
-    pub fn new(body_count: usize) -> Self {
-        let size = record_size(body_count);
+    /// An empty recording of a world with so many bodies and joints.
+    pub fn new(body_count: usize, joint_count: usize) -> Self {
+        let size = record_size(body_count, joint_count);
         Self::with_capacity(size, (MAX_BYTES / size).clamp(2, MAX_FRAMES))
     }
 
@@ -117,9 +135,9 @@ impl Recording {
     }
 
     /// Appends a frame; see [`encode_frame`].
-    pub fn record(&mut self, step: u64, row: &EnergyRow, bodies: impl Iterator<Item = BodyFrame>) {
+    pub fn record(&mut self, step: u64, row: &EnergyRow, frame: &WorldFrame) {
         self.last.clear();
-        encode_frame(&mut self.last, step, row, bodies);
+        encode_frame(&mut self.last, step, row, frame);
         if self.recorded.is_multiple_of(self.stride) && self.stored() == self.capacity {
             self.stride *= 2;
             self.remove_odd_frames();

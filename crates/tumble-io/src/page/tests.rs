@@ -13,10 +13,10 @@ fn between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
 }
 
 fn record(loaded: &Loaded, frames: u64) -> Recording {
-    let mut recording = Recording::new(loaded.world.body_count());
+    let mut recording = Recording::new(loaded.world.body_count(), loaded.world.joint_count());
     for step in 0..frames {
         let row = EnergyRow { time: step as f64, ..EnergyRow::default() };
-        recording.record(step, &row, BodyFrame::all(&loaded.world));
+        recording.record(step, &row, &WorldFrame::new(&loaded.world));
     }
     recording
 }
@@ -42,9 +42,9 @@ fn the_page_contains_header_and_frames() {
     assert!(head["shapes"][0]["particles"].is_null());
     let frames = STANDARD.decode(between(&html, "id=\"tumble-frames\">", "</script>")).unwrap();
     assert_eq!(frames, recording.records());
-    assert_eq!(frames.len(), 3 * record_size(1));
+    assert_eq!(frames.len(), 3 * record_size(1, 0));
     let number = |at: usize| f64::from_le_bytes(frames[at..at + 8].try_into().unwrap());
-    assert_eq!(number(record_size(1)), 1.0);
+    assert_eq!(number(record_size(1, 0)), 1.0);
 }
 
 #[test]
@@ -86,9 +86,10 @@ fn names_in_the_page_are_escaped() {
 
 #[test]
 fn the_page_loads_nothing_from_outside() {
-    for html in
-        [live_html(), motion_html(&Header::new(&task2().scene, &task2().world), &Recording::new(1))]
-    {
+    for html in [
+        live_html(),
+        motion_html(&Header::new(&task2().scene, &task2().world), &Recording::new(1, 0)),
+    ] {
         for word in ["http://", "https://", " src=", "url(", "@import", "import ", "export "] {
             let allowed = html.replace("http://www.w3.org/2000/svg", "");
             assert!(!allowed.contains(word), "{word}");
@@ -162,14 +163,14 @@ fn every_module_in_the_viewer_folder_is_in_the_page() {
 
 #[test]
 fn a_long_recording_is_thinned_out_and_keeps_both_ends() {
-    let mut recording = Recording::with_capacity(record_size(0), 8);
+    let mut recording = Recording::with_capacity(record_size(0, 0), 8);
     for step in 0..1003 {
         let row = EnergyRow { time: step as f64, ..EnergyRow::default() };
-        recording.record(step, &row, std::iter::empty());
+        recording.record(step, &row, &WorldFrame::default());
         let records = recording.records();
-        assert_eq!(records.len(), recording.frame_count() * record_size(0));
+        assert_eq!(records.len(), recording.frame_count() * record_size(0, 0));
         let time = |record: &[u8]| f64::from_le_bytes(record[..8].try_into().unwrap());
-        let times: Vec<_> = records.chunks(record_size(0)).map(time).collect();
+        let times: Vec<_> = records.chunks(record_size(0, 0)).map(time).collect();
         assert_eq!(times[0], 0.0);
         assert_eq!(times.last(), Some(&(step as f64)));
         assert!(times.len() <= 9 && times.is_sorted_by(|a, b| a < b), "{times:?}");
@@ -178,6 +179,6 @@ fn a_long_recording_is_thinned_out_and_keeps_both_ends() {
         assert!(gaps.iter().rev().skip(1).all(|gap| *gap == gaps[0]), "{times:?}");
     }
     assert_eq!(recording.recorded_count(), 1003);
-    let large = Recording::new(1_000_000);
+    let large = Recording::new(1_000_000, 0);
     assert!(large.is_empty() && large.frame_count() == 0);
 }

@@ -9,19 +9,21 @@ use super::trajectory::{csv_field, write_numbers};
 /// Columns of `contact_points.csv`.
 pub const CONTACT_POINTS_HEADER: &str = "time,body,other,px,py,pz,nx,ny,nz,depth,fx,fy,fz";
 
-/// The names of what can touch, in the order of the world.
-pub(super) struct ContactNames {
+/// The names of what rows are about, in the order of the world.
+pub(super) struct RowNames {
     /// Those of the bodies.
     pub bodies: Vec<String>,
     /// Those of the walls.
     pub walls: Vec<String>,
+    /// Those of the joints.
+    pub joints: Vec<String>,
 }
 
 /// Writes the rows of one frame at `time` (s) to `contact_points.csv`, one for each contact of the latest step.
 pub(super) fn write_contact_points(
     out: &mut impl Write,
     time: f64,
-    names: &ContactNames,
+    names: &RowNames,
     contacts: &[Contact],
 ) -> io::Result<()> {
     let mut shortest = zmij::Buffer::new();

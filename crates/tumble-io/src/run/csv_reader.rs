@@ -147,6 +147,11 @@ pub(crate) fn parse_contact(row: &str) -> Option<(f64, Cow<'_, str>, [f64; 6])> 
     parse_body_row(row)
 }
 
+/// Parses a row of `joints.csv`: time (s), name of the joint, force (N), torque (N·m), coordinate and rate.
+pub(super) fn parse_joint(row: &str) -> Option<(f64, Cow<'_, str>, [f64; 8])> {
+    parse_body_row(row)
+}
+
 /// The time (s) of a row of `contact_points.csv`, if it is one.
 pub(super) fn parse_contact_point_time(row: &str) -> Option<f64> {
     let (time, rest) = row.split_once(',')?;

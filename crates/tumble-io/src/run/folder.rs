@@ -20,6 +20,8 @@ pub(crate) const ENERGY_FILE: &str = "energy.csv";
 pub(super) const CONTACTS_FILE: &str = "contacts.csv";
 /// One row per frame and contact, where the scene asks for it.
 pub(super) const CONTACT_POINTS_FILE: &str = "contact_points.csv";
+/// Name of the file with the forces and coordinates of joints.
+pub(super) const JOINTS_FILE: &str = "joints.csv";
 /// The run in a few numbers; written last, so that its presence marks a complete run.
 pub(super) const SUMMARY_FILE: &str = "summary.json";
 /// Plot of the energy ledger.
@@ -32,12 +34,13 @@ pub(super) const MOTION_PAGE_FILE: &str = "motion.html";
 pub const CHECKPOINT_FILE: &str = "checkpoint.tumble";
 
 /// All files that a run writes. Other files in the folder are never touched.
-pub(super) const FILES: [&str; 10] = [
+pub(super) const FILES: [&str; 11] = [
     SCENE_FILE,
     TRAJECTORY_FILE,
     ENERGY_FILE,
     CONTACTS_FILE,
     CONTACT_POINTS_FILE,
+    JOINTS_FILE,
     SUMMARY_FILE,
     ENERGY_PLOT_FILE,
     MOTION_PICTURE_FILE,

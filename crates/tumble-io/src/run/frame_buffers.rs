@@ -1,6 +1,8 @@
 //! The frames that a run holds in memory for its pictures and its page.
 
-use crate::page::{BodyFrame, Recording};
+use tumble::World;
+
+use crate::page::{BodyFrame, Recording, WorldFrame};
 use crate::picture::{Frame, Pose};
 use crate::plot::EnergyRow;
 
@@ -14,15 +16,16 @@ pub(super) struct FrameBuffers {
 }
 
 impl FrameBuffers {
-    /// Empty buffers for a world of `body_count` bodies.
-    pub fn new(body_count: usize) -> Self {
-        Self { pictures: FrameHistory::new(body_count), page: Recording::new(body_count) }
+    /// Empty buffers for a world.
+    pub fn new(world: &World) -> Self {
+        let (bodies, joints) = (world.body_count(), world.joint_count());
+        Self { pictures: FrameHistory::new(bodies), page: Recording::new(bodies, joints) }
     }
 
-    /// Adds a frame: the step, the row of the energy ledger and all bodies.
-    pub fn record(&mut self, step: u64, row: &EnergyRow, bodies: Vec<BodyFrame>) {
-        self.pictures.record(picture_frame(row.time, &bodies), *row);
-        self.page.record(step, row, bodies.into_iter());
+    /// Adds a frame: the step, the row of the energy ledger, all bodies and joints.
+    pub fn record(&mut self, step: u64, row: &EnergyRow, frame: &WorldFrame) {
+        self.pictures.record(picture_frame(row.time, &frame.bodies), *row);
+        self.page.record(step, row, frame);
     }
 }
 

@@ -15,6 +15,7 @@
 //! | `kept_meshes` | the meshes of a run, kept with its folder |
 //! | `trajectory` | rows of `trajectory.csv` and `contacts.csv` |
 //! | `contact_points` | rows of `contact_points.csv` |
+//! | `joint_rows` | rows of `joints.csv` |
 //! | `energy_ledger` | rows of `energy.csv` |
 //! | `csv_reader` | reads and parses those rows |
 //! | `picture_input` | scene and frames as input of the picture module |
@@ -37,6 +38,7 @@ mod energy_ledger;
 mod error;
 mod folder;
 mod frame_buffers;
+mod joint_rows;
 mod kept_meshes;
 mod lock;
 mod picture_input;
@@ -56,6 +58,7 @@ pub use energy_ledger::{ENERGY_HEADER, EnergyColumns, energy_row};
 pub use error::RunError;
 pub use folder::{CHECKPOINT_FILE, RunFolder};
 pub use frame_buffers::FrameHistory;
+pub use joint_rows::JOINTS_HEADER;
 pub use progress::{FinishedRun, Progress};
 pub use resume::Resumption;
 pub use resume_error::ResumeError;

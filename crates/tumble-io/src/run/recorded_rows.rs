@@ -9,8 +9,9 @@ use super::csv_reader::{
 use super::energy_ledger::EnergyColumns;
 use super::folder::{CONTACT_POINTS_FILE, CONTACTS_FILE, ENERGY_FILE, RunFolder, TRAJECTORY_FILE};
 use super::frame_buffers::FrameBuffers;
+use super::joint_rows::JointReader;
 use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
-use crate::page::BodyFrame;
+use crate::page::{BodyFrame, WorldFrame};
 use crate::scene::Scene;
 
 /// The rows of a run up to its checkpoint.
@@ -24,6 +25,8 @@ pub(super) struct RecordedRows {
     pub contacts_bytes: u64,
     /// Length of `contact_points.csv` up to the checkpoint (bytes), if the scene asks for it.
     pub contact_points_bytes: Option<u64>,
+    /// Length of `joints.csv` up to the checkpoint (bytes), if there are joints.
+    pub joints_bytes: Option<u64>,
     /// The frames, for the pictures and the page.
     pub frames: FrameBuffers,
 }
@@ -46,7 +49,8 @@ impl RecordedRows {
         let parse = |row: String| parse_energy(&row, columns).ok_or(());
         let mut energy = CsvReader::open(folder.file_path(ENERGY_FILE), &columns.header())?;
         let mut contacts = ContactReader::open(folder)?;
-        let mut frames = FrameBuffers::new(world.body_count());
+        let mut joints = JointReader::open(folder, world)?;
+        let mut frames = FrameBuffers::new(world);
         let last = world.state().step;
         let mut row = energy.next_row()?.map(parse).transpose();
         // a run that was resumed without its rows begins with a later frame
@@ -70,7 +74,8 @@ impl RecordedRows {
                 }
             };
             let bodies = read_bodies((&mut trajectory, &mut contacts), world, time)?;
-            frames.record(step, &current, bodies);
+            let joints = joints.frame(world, time)?;
+            frames.record(step, &current, &WorldFrame { bodies, joints });
             step = scene.next_frame(step);
             if step <= last {
                 row = energy.next_row()?.map(parse).transpose();
@@ -89,6 +94,7 @@ impl RecordedRows {
             energy_bytes,
             contacts_bytes,
             contact_points_bytes,
+            joints_bytes: joints.length(),
             frames,
         }))
     }

@@ -6,20 +6,21 @@ use std::time::{Duration, Instant};
 
 use tumble::{State, World};
 
-use super::contact_points::{CONTACT_POINTS_HEADER, ContactNames};
+use super::contact_points::{CONTACT_POINTS_HEADER, RowNames};
 use super::energy_ledger::{EnergyColumns, energy_row};
 use super::error::RunError;
 use super::folder::{
     CHECKPOINT_FILE, CONTACT_POINTS_FILE, CONTACTS_FILE, ENERGY_FILE, ENERGY_PLOT_FILE,
-    MOTION_PAGE_FILE, MOTION_PICTURE_FILE, RunFolder, TRAJECTORY_FILE,
+    JOINTS_FILE, MOTION_PAGE_FILE, MOTION_PICTURE_FILE, RunFolder, TRAJECTORY_FILE,
 };
 use super::frame_buffers::{FrameBuffers, picture_frame};
+use super::joint_rows::JOINTS_HEADER;
 use super::picture_input::motion_picture;
 use super::recorded_rows::RecordedRows;
 use super::run_writer::{CsvFiles, RunFrame, RunWriter};
 use super::trajectory::{CONTACTS_HEADER, TRAJECTORY_HEADER};
 use crate::checkpoint;
-use crate::page::{self, BodyFrame};
+use crate::page::{self, WorldFrame};
 use crate::plot::{EnergyRow, energy_svg};
 use crate::scene::Scene;
 
@@ -54,6 +55,11 @@ impl<'a> Recorder<'a> {
             trajectory: create(TRAJECTORY_FILE, TRAJECTORY_HEADER)?,
             energy: create(ENERGY_FILE, &columns.header())?,
             contacts: create(CONTACTS_FILE, CONTACTS_HEADER)?,
+            joints: if scene.joints.is_empty() {
+                None
+            } else {
+                Some(create(JOINTS_FILE, JOINTS_HEADER)?)
+            },
             contact_points: if scene.output.contact_points {
                 Some(create(CONTACT_POINTS_FILE, CONTACT_POINTS_HEADER)?)
             } else {
@@ -61,7 +67,7 @@ impl<'a> Recorder<'a> {
             },
             columns,
         };
-        let frames = FrameBuffers::new(world.body_count());
+        let frames = FrameBuffers::new(world);
         let writer = RunWriter::start(folder, files, frames, names(scene, world));
         Ok(Self::new(folder, writer, scene_toml, energy_start))
     }
@@ -89,6 +95,10 @@ impl<'a> Recorder<'a> {
             trajectory: open(TRAJECTORY_FILE, recorded.trajectory_bytes)?,
             energy: open(ENERGY_FILE, recorded.energy_bytes)?,
             contacts: open(CONTACTS_FILE, recorded.contacts_bytes)?,
+            joints: match recorded.joints_bytes {
+                Some(length) => Some(open(JOINTS_FILE, length)?),
+                None => None,
+            },
             contact_points: match recorded.contact_points_bytes {
                 Some(length) => Some(open(CONTACT_POINTS_FILE, length)?),
                 None => None,
@@ -112,9 +122,9 @@ impl<'a> Recorder<'a> {
     /// Records the current state of the world as a frame.
     pub fn record_frame(&mut self, world: &World) -> Result<(), RunError> {
         let row = self.energy_row(world)?;
-        let bodies = BodyFrame::all(world).collect();
+        let frame = WorldFrame::new(world);
         let contacts = world.contacts();
-        self.writer.write(RunFrame { step: world.state().step, row, bodies, contacts })
+        self.writer.write(RunFrame { step: world.state().step, row, frame, contacts })
     }
 
     /// The current row of the energy ledger; an error if the energy is not finite.
@@ -145,10 +155,10 @@ impl<'a> Recorder<'a> {
         let row = self.energy_row(world)?;
         let FrameBuffers { mut pictures, mut page } = self.writer.finish()?;
         // the last state need not be a frame, and a run resumed without its rows may have no frame
-        let bodies: Vec<_> = BodyFrame::all(world).collect();
-        pictures.record(picture_frame(row.time, &bodies), row);
+        let frame = WorldFrame::new(world);
+        pictures.record(picture_frame(row.time, &frame.bodies), row);
         if page.is_empty() {
-            page.record(world.state().step, &row, bodies.into_iter());
+            page.record(world.state().step, &row, &frame);
         }
         let (frames, rows) = pictures.finish();
         let draw_error = |name, error| RunError::Draw(self.folder.file_path(name), error);
@@ -164,9 +174,10 @@ impl<'a> Recorder<'a> {
     }
 }
 
-fn names(scene: &Scene, world: &World) -> ContactNames {
+fn names(scene: &Scene, world: &World) -> RowNames {
     let bodies = world.bodies().map(|body| body.name().to_owned()).collect();
-    ContactNames { bodies, walls: scene.wall_names() }
+    let joints = world.model().joints.list.iter().map(|joint| joint.name.clone()).collect();
+    RowNames { bodies, walls: scene.wall_names(), joints }
 }
 
 fn write_error(folder: &RunFolder, name: &str, error: io::Error) -> RunError {

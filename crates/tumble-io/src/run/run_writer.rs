@@ -8,14 +8,17 @@ use std::thread::JoinHandle;
 
 use tumble::Contact;
 
-use super::contact_points::{ContactNames, write_contact_points};
+use super::contact_points::{RowNames, write_contact_points};
 use super::energy_ledger::EnergyColumns;
 use super::energy_ledger::write_energy;
 use super::error::RunError;
-use super::folder::{CONTACT_POINTS_FILE, CONTACTS_FILE, ENERGY_FILE, RunFolder, TRAJECTORY_FILE};
+use super::folder::{
+    CONTACT_POINTS_FILE, CONTACTS_FILE, ENERGY_FILE, JOINTS_FILE, RunFolder, TRAJECTORY_FILE,
+};
 use super::frame_buffers::FrameBuffers;
+use super::joint_rows::write_joints;
 use super::trajectory::{write_contacts, write_frame};
-use crate::page::BodyFrame;
+use crate::page::WorldFrame;
 use crate::plot::EnergyRow;
 
 /// Frames are sent in batches of about so many bodies: waking a thread costs more than writing a
@@ -31,6 +34,8 @@ pub(super) struct CsvFiles {
     pub contacts: BufWriter<File>,
     /// `contact_points.csv`, if the scene asks for it.
     pub contact_points: Option<BufWriter<File>>,
+    /// `joints.csv`, if there are joints.
+    pub joints: Option<BufWriter<File>>,
     /// The columns of `energy.csv`.
     pub columns: EnergyColumns,
 }
@@ -39,7 +44,7 @@ pub(super) struct CsvFiles {
 pub(super) struct RunFrame {
     pub step: u64,
     pub row: EnergyRow,
-    pub bodies: Vec<BodyFrame>,
+    pub frame: WorldFrame,
     /// The contacts of the latest step, if they are recorded.
     pub contacts: Vec<Contact>,
 }
@@ -64,7 +69,7 @@ impl RunWriter {
         folder: &RunFolder,
         files: CsvFiles,
         frames: FrameBuffers,
-        names: ContactNames,
+        names: RowNames,
     ) -> Self {
         let (requests, received) = sync_channel(CHANNEL_CAPACITY);
         let worker = Worker { folder: folder.clone(), files, frames, names };
@@ -77,7 +82,7 @@ impl RunWriter {
     /// # Errors
     /// [`RunError::Write`] when an earlier frame could not be written.
     pub fn write(&mut self, frame: RunFrame) -> Result<(), RunError> {
-        let rows = (frame.bodies.len() + frame.contacts.len()).max(1);
+        let rows = (frame.frame.bodies.len() + frame.contacts.len()).max(1);
         self.batch.push(frame);
         if self.batch.len() * rows >= BATCH_BODIES { self.send_batch() } else { Ok(()) }
     }
@@ -145,7 +150,7 @@ struct Worker {
     folder: RunFolder,
     files: CsvFiles,
     frames: FrameBuffers,
-    names: ContactNames,
+    names: RowNames,
 }
 
 impl Worker {
@@ -167,15 +172,22 @@ impl Worker {
     }
 
     fn write(&mut self, frame: RunFrame) -> Result<(), RunError> {
-        let RunFrame { step, row, bodies, contacts: listed } = frame;
-        let CsvFiles { trajectory, energy, contacts, contact_points, columns } = &mut self.files;
+        let RunFrame { step, row, frame, contacts: listed } = frame;
+        let CsvFiles { trajectory, energy, contacts, contact_points, joints, columns } =
+            &mut self.files;
         let names = &self.names.bodies;
         let failed = |name| move |error| (name, error);
-        write_frame(trajectory, row.time, names, &bodies)
+        write_frame(trajectory, row.time, names, &frame.bodies)
             .map_err(failed(TRAJECTORY_FILE))
             .and_then(|()| write_energy(energy, &row, *columns).map_err(failed(ENERGY_FILE)))
             .and_then(|()| {
-                write_contacts(contacts, row.time, names, &bodies).map_err(failed(CONTACTS_FILE))
+                write_contacts(contacts, row.time, names, &frame.bodies)
+                    .map_err(failed(CONTACTS_FILE))
+            })
+            .and_then(|()| match joints {
+                Some(file) => write_joints(file, row.time, &self.names.joints, &frame.joints)
+                    .map_err(failed(JOINTS_FILE)),
+                None => Ok(()),
             })
             .and_then(|()| match contact_points {
                 Some(file) => write_contact_points(file, row.time, &self.names, &listed)
@@ -183,7 +195,7 @@ impl Worker {
                 None => Ok(()),
             })
             .map_err(|(name, error)| RunError::Write(self.folder.file_path(name), error))?;
-        self.frames.record(step, &row, bodies);
+        self.frames.record(step, &row, &frame);
         Ok(())
     }
 
@@ -195,11 +207,12 @@ impl Worker {
         &mut self,
         apply: impl Fn(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), RunError> {
-        let CsvFiles { trajectory, energy, contacts, contact_points, .. } = &mut self.files;
+        let CsvFiles { trajectory, energy, contacts, contact_points, joints, .. } = &mut self.files;
         let files =
             [(TRAJECTORY_FILE, trajectory), (ENERGY_FILE, energy), (CONTACTS_FILE, contacts)];
-        let if_asked = contact_points.iter_mut().map(|file| (CONTACT_POINTS_FILE, file));
-        for (name, file) in files.into_iter().chain(if_asked) {
+        let others = contact_points.iter_mut().map(|file| (CONTACT_POINTS_FILE, file));
+        let others = others.chain(joints.iter_mut().map(|file| (JOINTS_FILE, file)));
+        for (name, file) in files.into_iter().chain(others) {
             apply(file).map_err(|error| RunError::Write(self.folder.file_path(name), error))?;
         }
         Ok(())

@@ -312,11 +312,17 @@ impl Scene {
         !self.loads.is_empty()
     }
 
-    /// If there are several bodies, those that others pass through: they have no contact surface.
+    /// If there are several bodies, those without joints that others pass through: they have no contact surface.
     pub fn without_surface(&self) -> Vec<&BodyScene> {
         let count: u64 =
             self.bodies.iter().map(|b| b.copies.as_ref().map_or(1, Copies::total)).sum();
+        let is_joined = |body: &&BodyScene| {
+            let is = |name: &Option<String>| name.as_ref() == Some(&body.name);
+            let joints = self.joints.iter();
+            joints.clone().any(|own| is(&own.chain) || own.joint.between.iter().any(is))
+        };
         let without = self.bodies.iter().filter(|body| body.surface == Surface::None);
+        let without = without.filter(|body| !is_joined(body));
         if count > 1 { without.collect() } else { Vec::new() }
     }
 

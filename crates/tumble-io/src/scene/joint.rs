@@ -46,7 +46,10 @@ pub fn joint(reader: Reader, index: usize) -> Option<JointScene> {
     }
     let name = reader.string("name").map_or_else(|| format!("joint {index}"), str::to_owned);
     if name.contains(char::is_control) || name.is_empty() {
-        reader.problem("name", "must not be empty, nor contain line breaks or other control characters");
+        reader.problem(
+            "name",
+            "must not be empty, nor contain line breaks or other control characters",
+        );
     }
     let number = |key| reader.number(key, Range::NotNegative);
     let joint = Joint {
@@ -83,7 +86,10 @@ fn motor(reader: Reader) -> Option<Motor> {
             speed.map(|speed| Motor::Speed { speed, effort })
         }
         Some(_) => {
-            reader.need("stiffness", "is missing: the torque or force per rad or m away from `target`");
+            reader.need(
+                "stiffness",
+                "is missing: the torque or force per rad or m away from `target`",
+            );
             let (stiffness, damping) = (stiffness.unwrap_or(0.0), damping.unwrap_or(0.0));
             target.map(|target| Motor::Position { target, stiffness, damping, effort })
         }

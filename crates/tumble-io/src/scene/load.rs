@@ -287,7 +287,12 @@ fn shape_key(body: &BodyScene) -> String {
 fn places(scene: &BodyScene, built: &ShapeAndMass) -> Vec<(String, DVec3)> {
     let centre = scene.position.unwrap_or(built.shape.centre());
     let poses = scene.copies.as_ref().map_or(vec![(DVec3::ZERO, DQuat::IDENTITY)], |c| c.poses());
-    scene.names().into_iter().zip(poses).map(|(name, (offset, _))| (name, centre + offset)).collect()
+    scene
+        .names()
+        .into_iter()
+        .zip(poses)
+        .map(|(name, (offset, _))| (name, centre + offset))
+        .collect()
 }
 
 /// All joints, and for each name of one the index of its `[[joint]]`; `report` gets the faults of chains.
@@ -304,7 +309,13 @@ fn joints(
             body.and_then(|body| body.copies.as_ref()).map_or(0, Copies::total)
         });
         if let (Some(chain), true) = (&own.chain, count < 2) {
-            report(index, "chain", format!("is \"{chain}\", but must be the name of a body with `copies`, two or more"));
+            report(
+                index,
+                "chain",
+                format!(
+                    "is \"{chain}\", but must be the name of a body with `copies`, two or more"
+                ),
+            );
         }
         for joint in own.joints(count, |name| centres.get(name).copied()) {
             owners.insert(joint.name.clone().unwrap_or_default(), index);
@@ -321,7 +332,9 @@ fn of_joint_or_load(
     joint_owners: &BTreeMap<String, usize>,
 ) -> Option<Problem> {
     let (table, index, quantity) = match error {
-        BuildError::Joint { joint, quantity, .. } => ("joint", *joint_owners.get(joint)?, *quantity),
+        BuildError::Joint { joint, quantity, .. } => {
+            ("joint", *joint_owners.get(joint)?, *quantity)
+        }
         BuildError::Load { load, quantity, .. } => ("load", *load, *quantity),
         _ => return None,
     };

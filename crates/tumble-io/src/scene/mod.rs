@@ -45,8 +45,8 @@ mod write_joints;
 
 pub use builtin::{BUILTIN, Builtin, builtin};
 pub use description::{
-    BodyScene, BoxScene, Copies, Geometry, JointScene, MassScene, MeshNotes, MeshScene, MotionScene,
-    OutputScene, Scene, WallScene,
+    BodyScene, BoxScene, Copies, Geometry, JointScene, MassScene, MeshNotes, MeshScene,
+    MotionScene, OutputScene, Scene, WallScene,
 };
 pub use integrator_choice::{StepLimits, load_with_integrator};
 pub use load::{LoadOptions, Loaded, load_builtin, load_file, load_text};

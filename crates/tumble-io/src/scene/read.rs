@@ -6,13 +6,11 @@ use tumble::{DVec3, Integrator, Material, Overlaps, SolverSettings, WallBox, Wal
 
 use super::body::{self, MAX_COPIES};
 use super::common::{is_unit, material, orientation};
-use super::description::{
-    BodyScene, BoxScene, Copies, JointScene, OutputScene, Scene, WallScene,
-};
-use super::{joint, loads};
+use super::description::{BodyScene, BoxScene, Copies, JointScene, OutputScene, Scene, WallScene};
 use super::problem::Problem;
 use super::reader::{Range, Reader};
 use super::tree::Node;
+use super::{joint, loads};
 
 /// The largest number of steps: more than a double can count exactly is an error.
 const MAX_STEPS: f64 = 9e15;

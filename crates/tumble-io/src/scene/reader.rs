@@ -246,7 +246,11 @@ impl<'a> Reader<'a> {
         };
         let found = point(node).map(|p| [p, p]).or(pair.map(|(a, b)| [a, b]));
         if found.is_none() {
-            self.wrong_type(key, node, "a point [x, y, z] or two points [[x, y, z], [x, y, z]] of finite numbers");
+            self.wrong_type(
+                key,
+                node,
+                "a point [x, y, z] or two points [[x, y, z], [x, y, z]] of finite numbers",
+            );
         }
         found
     }

@@ -29,11 +29,8 @@ fn joint(JointScene { joint, chain }: &JointScene) -> Table {
     } else {
         let name = |name: &Option<String>| Value::from(name.as_deref().unwrap_or("world"));
         put(&mut table, "between", between.iter().map(name).collect::<Vec<_>>());
-        let at = if kind.has_length() {
-            Value::from(at.map(vector).to_vec())
-        } else {
-            vector(at[0])
-        };
+        let at =
+            if kind.has_length() { Value::from(at.map(vector).to_vec()) } else { vector(at[0]) };
         put(&mut table, "at", at);
     }
     if kind.has_axis() {

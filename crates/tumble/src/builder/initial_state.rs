@@ -31,8 +31,7 @@ pub(super) fn body_state(
     }
     let orientation = if q.is_normalized() { q } else { (q / largest).normalize() };
     let rotation = DMat3::from_quat(orientation);
-    let angular_momentum =
-        rotation * (model.inertia * (rotation.transpose() * body_omega));
+    let angular_momentum = rotation * (model.inertia * (rotation.transpose() * body_omega));
     if !angular_momentum.is_finite() {
         return refuse("initial_angular_velocity", &body_omega, three);
     }

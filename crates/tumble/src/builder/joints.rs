@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use super::description::WorldBuilder;
 use crate::joint::{JointVelocities, Place};
-use crate::{BuildError, Integrator, Joint, JointKind, JointModel, JointState, Joints, Model, Motor, State};
+use crate::{
+    BuildError, Integrator, Joint, JointKind, JointModel, JointState, Joints, Model, Motor, State,
+};
 
 /// What is wrong with a joint: the quantity, its value, and what is allowed.
 type Fault = (&'static str, String, &'static str);
@@ -14,7 +16,12 @@ const MEETS: f64 = 1e-9;
 
 impl WorldBuilder {
     /// Adds the joints to the model and the state.
-    pub(super) fn add_joints(&self, model: &mut Model, state: &mut State, errors: &mut Vec<BuildError>) {
+    pub(super) fn add_joints(
+        &self,
+        model: &mut Model,
+        state: &mut State,
+        errors: &mut Vec<BuildError>,
+    ) {
         let mut list = Vec::with_capacity(self.joints.len());
         for (index, joint) in self.joints.iter().enumerate() {
             let name = joint.name.clone().unwrap_or_else(|| format!("joint {index}"));
@@ -30,7 +37,12 @@ impl WorldBuilder {
         if let Some(twice) = names.windows(2).find(|pair| pair[0] == pair[1]) {
             let joint = twice[0].clone();
             let allowed = "different from those of other joints";
-            errors.push(BuildError::Joint { joint: joint.clone(), quantity: "name", value: joint, allowed });
+            errors.push(BuildError::Joint {
+                joint: joint.clone(),
+                quantity: "name",
+                value: joint,
+                allowed,
+            });
         }
         model.joints = Joints::new(list, &model.bodies);
         state.joints = vec![JointState::default(); model.joints.list.len()];
@@ -40,7 +52,12 @@ impl WorldBuilder {
     }
 
     /// Lets velocities that are left out follow from the joints, and checks that all of them fit.
-    fn set_joined_velocities(&self, model: &Model, state: &mut State, errors: &mut Vec<BuildError>) {
+    fn set_joined_velocities(
+        &self,
+        model: &Model,
+        state: &mut State,
+        errors: &mut Vec<BuildError>,
+    ) {
         if model.joints.is_empty() {
             return;
         }
@@ -100,7 +117,11 @@ fn joint_model(
     for (side, body) in bodies.iter().enumerate() {
         let Some(body) = body.map(|body| &model.bodies[body as usize]) else { continue };
         let is_away = joint.anchors[side].length() > MEETS * (1.0 + body.extent);
-        if body.is_free() && body.inverse_moments == DVec3::ZERO && is_away && !joint.kind.has_length() {
+        if body.is_free()
+            && body.inverse_moments == DVec3::ZERO
+            && is_away
+            && !joint.kind.has_length()
+        {
             let allowed = "\"distance\" or \"rope\" for a body of one point away from the joint: without inertia it would not turn";
             return Err(("kind", format!("\"{}\"", joint.kind.name()), allowed));
         }
@@ -121,7 +142,8 @@ fn check(joint: &Joint) -> Result<(), Fault> {
         return Err(("at", format!("{first}, {second}"), "two points at a distance"));
     }
     if !kind.has_length() && separation > MEETS * size {
-        let allowed = "one point, or the same point twice: the bodies of this kind of joint meet there";
+        let allowed =
+            "one point, or the same point twice: the bodies of this kind of joint meet there";
         return Err(("at", format!("{first}, {second}"), allowed));
     }
     if kind.has_axis() && !(joint.axis.is_finite() && joint.axis.length() > 0.0) {
@@ -133,7 +155,8 @@ fn check(joint: &Joint) -> Result<(), Fault> {
             return Err(("limits", value, "left out: a joint of this kind has none"));
         }
         if !(low <= 0.0 && high >= 0.0 && low < high) {
-            let allowed = "the smallest and the largest coordinate, with 0, that of the start, between them";
+            let allowed =
+                "the smallest and the largest coordinate, with 0, that of the start, between them";
             return Err(("limits", value, allowed));
         }
     }
@@ -186,7 +209,11 @@ fn check_forces(joint: &Joint) -> Result<(), Fault> {
     }
     let Some(motor) = joint.motor else { return Ok(()) };
     if !kind.has_axis() {
-        return Err(("motor", "there".to_owned(), "left out: only \"hinge\" and \"slider\" have one"));
+        return Err((
+            "motor",
+            "there".to_owned(),
+            "left out: only \"hinge\" and \"slider\" have one",
+        ));
     }
     let (is_valid, effort) = match motor {
         Motor::Speed { speed, effort } => (speed.is_finite(), effort),

@@ -139,10 +139,18 @@ impl Elimination {
             for (index, &(a, a_side)) in joints.iter().enumerate() {
                 for &(b, b_side) in &joints[..index] {
                     let in_order = places[a as usize] < places[b as usize];
-                    let [(earlier, e_side), (later, l_side)] =
-                        if in_order { [(a, a_side), (b, b_side)] } else { [(b, b_side), (a, a_side)] };
+                    let [(earlier, e_side), (later, l_side)] = if in_order {
+                        [(a, a_side), (b, b_side)]
+                    } else {
+                        [(b, b_side), (a, a_side)]
+                    };
                     let block = self.block(places[earlier as usize], places[later as usize]);
-                    self.couplings.push(Coupling { later, earlier, block, sides: [l_side, e_side] });
+                    self.couplings.push(Coupling {
+                        later,
+                        earlier,
+                        block,
+                        sides: [l_side, e_side],
+                    });
                 }
             }
         }
@@ -157,10 +165,8 @@ impl Elimination {
     pub fn factor(&self, matrix: &mut Matrix) {
         let mut targets = self.targets.iter();
         let Matrix { diagonal, blocks } = matrix;
-        let originals: Vec<RowValues> = diagonal
-            .iter()
-            .map(|block| std::array::from_fn(|row| block[row][row]))
-            .collect();
+        let originals: Vec<RowValues> =
+            diagonal.iter().map(|block| std::array::from_fn(|row| block[row][row])).collect();
         for place in 0..self.order.len() {
             let inverse = inverse(&diagonal[place], &originals[place]);
             diagonal[place] = inverse;
@@ -197,7 +203,8 @@ impl Elimination {
             for at in self.column(place) {
                 let later = values[self.order[self.later[at] as usize] as usize];
                 for (column, value) in y.iter_mut().enumerate() {
-                    *value -= (0..MAX_ROWS).map(|row| blocks[at][row][column] * later[row]).sum::<f64>();
+                    *value -=
+                        (0..MAX_ROWS).map(|row| blocks[at][row][column] * later[row]).sum::<f64>();
                 }
             }
             values[joint as usize] = times(&diagonal[place], &y);

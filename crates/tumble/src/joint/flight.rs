@@ -155,8 +155,10 @@ impl Flight<'_> {
                 let bound = joint.limits[usize::from(*limit == Limit::Upper)];
                 residuals[row] = joint.near(rows.rows[row].value, joint_state.coordinate) - bound;
             }
-            let places = joint.bodies.iter().flatten().map(|body| &work.system.places[*body as usize]);
-            let size = places.map(|place| place.position.length()).fold(rows.arm.length(), f64::max);
+            let places =
+                joint.bodies.iter().flatten().map(|body| &work.system.places[*body as usize]);
+            let size =
+                places.map(|place| place.position.length()).fold(rows.arm.length(), f64::max);
             let size = if size > 0.0 { size } else { 1.0 };
             for (residual, row) in residuals.iter().zip(&rows.rows) {
                 let size = if row.linear == glam::DVec3::ZERO { 1.0 } else { size };
@@ -245,7 +247,8 @@ impl Flight<'_> {
         self.set_softness(state.time);
         let mut impulses = Vec::new();
         loop {
-            let JointWork { system, softness, start_twists, twists, residuals, .. } = &mut *self.work;
+            let JointWork { system, softness, start_twists, twists, residuals, .. } =
+                &mut *self.work;
             system.factor(model, softness);
             twists.clone_from(start_twists);
             impulses.clear();
@@ -298,9 +301,7 @@ impl Flight<'_> {
             (&self.model.joints.list[index], self.work.start_system.rows[index].rows[row].value);
         let size = 1.0 + joint.start_length + value.abs();
         // the same in every turn of a hinge
-        let is_at = |limit: &f64| {
-            (joint.near(value, *limit) - limit).abs() <= ACCEPTED * size
-        };
+        let is_at = |limit: &f64| (joint.near(value, *limit) - limit).abs() <= ACCEPTED * size;
         !joint.limits.iter().filter(|limit| limit.is_finite()).any(is_at)
     }
 

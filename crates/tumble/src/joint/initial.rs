@@ -84,9 +84,8 @@ impl<'a> JointVelocities<'a> {
         }
         self.system.factor(&model, &softness(&model));
         for _ in 0..2 {
-            let rates = (0..model.joints.list.len()).map(|joint| {
-                self.system.rates(&model, joint, &self.twists).map(|rate| -rate)
-            });
+            let rates = (0..model.joints.list.len())
+                .map(|joint| self.system.rates(&model, joint, &self.twists).map(|rate| -rate));
             let mut impulses: Vec<RowValues> = rates.collect();
             self.system.solve(&model, &mut impulses);
             self.system.add_to_twists(&model, &impulses, &mut self.twists);
@@ -96,24 +95,26 @@ impl<'a> JointVelocities<'a> {
     /// A joint that the velocities do not fit, and the rate at which its constraint is broken (m/s or rad/s).
     pub fn misfit(&self) -> Option<(usize, f64)> {
         let joints = self.model.joints.list.iter().enumerate();
-        joints.filter_map(|(index, joint)| {
-            let rates = self.system.rates(self.model, index, &self.twists);
-            let rates = rates[..joint.constraint_count()].iter().map(|rate| rate.abs());
-            let worst = rates.fold(0.0, f64::max);
-            let speeds = joint.bodies.iter().flatten().map(|body| {
-                let (v, omega) = self.twists[*body as usize];
-                v.length() + omega.length() * (1.0 + self.system.rows[index].arm.length())
-            });
-            let speed = speeds.fold(0.0, f64::max);
-            (worst > FITS * speed || worst.is_nan()).then_some((index, worst))
-        })
-        .max_by(|a, b| a.1.total_cmp(&b.1))
+        joints
+            .filter_map(|(index, joint)| {
+                let rates = self.system.rates(self.model, index, &self.twists);
+                let rates = rates[..joint.constraint_count()].iter().map(|rate| rate.abs());
+                let worst = rates.fold(0.0, f64::max);
+                let speeds = joint.bodies.iter().flatten().map(|body| {
+                    let (v, omega) = self.twists[*body as usize];
+                    v.length() + omega.length() * (1.0 + self.system.rows[index].arm.length())
+                });
+                let speed = speeds.fold(0.0, f64::max);
+                (worst > FITS * speed || worst.is_nan()).then_some((index, worst))
+            })
+            .max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Sets the velocities of the joined free bodies.
     pub fn apply(&self, state: &mut State) {
         for &index in &self.model.joints.bodies {
-            let (body, state) = (&self.model.bodies[index as usize], &mut state.bodies[index as usize]);
+            let (body, state) =
+                (&self.model.bodies[index as usize], &mut state.bodies[index as usize]);
             let (v, omega) = self.twists[index as usize];
             let rotation = DMat3::from_quat(state.orientation);
             let before = body.angular_velocity(rotation, state.angular_momentum);

@@ -151,8 +151,7 @@ impl CoordinateLaw {
     fn find_breaks(&mut self) {
         let jumps = [self.drive, self.friction, self.limit];
         let jumps = jumps.iter().filter(|jump| jump.below != jump.above).map(|jump| jump.velocity);
-        let mut breaks: Vec<f64> =
-            jumps.chain(self.servo.ends().into_iter().flatten()).collect();
+        let mut breaks: Vec<f64> = jumps.chain(self.servo.ends().into_iter().flatten()).collect();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
         self.count = breaks.len();
@@ -191,7 +190,8 @@ impl CoordinateLaw {
     }
 
     fn sloped(&self, side: Side) -> [f64; 2] {
-        let jumps = [self.drive, self.friction, self.limit].iter().map(|jump| jump.at(side)).sum::<f64>();
+        let jumps =
+            [self.drive, self.friction, self.limit].iter().map(|jump| jump.at(side)).sum::<f64>();
         let [a, b] = self.servo.at(side);
         [self.spring.a + a, self.spring.b + b + jumps]
     }

@@ -20,11 +20,11 @@ mod system;
 mod tests;
 mod work;
 
+pub use self::definition::{Joint, JointKind, Motor};
 pub(crate) use self::flight::fly;
 pub(crate) use self::initial::{JointVelocities, redundant_constraints};
 pub(crate) use self::kick::{JointKick, spring_energy};
-pub use self::definition::{Joint, JointKind, Motor};
-pub use self::model::{JointModel, Joints};
 pub(crate) use self::model::Place;
+pub use self::model::{JointModel, Joints};
 pub(crate) use self::read::{constraint_error, coordinate_and_rate};
 pub(crate) use self::work::JointWork;

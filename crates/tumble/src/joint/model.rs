@@ -121,9 +121,7 @@ impl JointModel {
             body.map_or(Place::WORLD, |body| Place::new(&state.bodies[body as usize]))
         };
         let places = self.bodies.map(place);
-        let at = |side: usize| {
-            places[side].position + places[side].rotation * self.anchors[side]
-        };
+        let at = |side: usize| places[side].position + places[side].rotation * self.anchors[side];
         let at = if self.kind.has_length() { [at(0), at(1)] } else { [at(0); 2] };
         let length = (at[0] - at[1]).length();
         let coordinate = state.joints[index].coordinate;
@@ -155,7 +153,13 @@ impl JointModel {
             stiffness: self.stiffness,
             rest: if self.kind.has_axis() { self.natural - coordinate } else { 0.0 },
             damping: self.damping,
-            length: has_natural.then(|| (self.natural + self.start_length).max(if self.kind == JointKind::Rope { length } else { 0.0 })),
+            length: has_natural.then(|| {
+                (self.natural + self.start_length).max(if self.kind == JointKind::Rope {
+                    length
+                } else {
+                    0.0
+                })
+            }),
             contact: self.contact,
             // in the past if it has let go
             until: (self.until < f64::INFINITY).then(|| self.until - state.time),

@@ -66,8 +66,8 @@ impl JointRows {
     pub fn new(joint: &JointModel, places: [Place; 2]) -> Self {
         let [a, b] = places;
         let arms = [a.rotation * joint.anchors[0], b.rotation * joint.anchors[1]];
-        let separation = (a.position - b.position)
-            + ((a.compensation - b.compensation) + (arms[0] - arms[1]));
+        let separation =
+            (a.position - b.position) + ((a.compensation - b.compensation) + (arms[0] - arms[1]));
         let [first, second] = [a.rotation * joint.axes[0], b.rotation * joint.axes[1]];
         let mut rows = Self { arm: arms[0], ..Self::default() };
         if joint.kind.has_length() {
@@ -150,8 +150,7 @@ mod tests {
         for kind in JointKind::ALL {
             let second = if kind.has_length() { at[1] } else { at[0] };
             let axis = DVec3::new(0.2, 1.0, -0.5);
-            let joint =
-                Joint { at: [at[0], second], axis, ..Joint::new(kind, ["a", "b"], at[0]) };
+            let joint = Joint { at: [at[0], second], axis, ..Joint::new(kind, ["a", "b"], at[0]) };
             let start = [place(0.3), place(1.1)];
             let model = JointModel::new(&joint, String::new(), [Some(0), Some(1)], start);
             // the axis of a hinge is not that of both bodies elsewhere, where its angle is not defined
@@ -168,7 +167,10 @@ mod tests {
                 assert!((found - expected).abs() < 1e-8, "{kind:?} {index}: {found} {expected}");
             }
             let start = JointRows::new(&model, start);
-            assert!(start.rows[..start.count].iter().all(|row| row.value.abs() < 1e-14), "{kind:?}");
+            assert!(
+                start.rows[..start.count].iter().all(|row| row.value.abs() < 1e-14),
+                "{kind:?}"
+            );
         }
     }
 }

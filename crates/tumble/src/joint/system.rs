@@ -50,7 +50,8 @@ impl System {
             for (side, body) in free_bodies(model, joint) {
                 let place = &self.places[body];
                 for (turned, row) in turned[side].iter_mut().zip(&rows.rows[..rows.count]) {
-                    *turned = model.bodies[body].angular_velocity(place.rotation, row.angular[side]);
+                    *turned =
+                        model.bodies[body].angular_velocity(place.rotation, row.angular[side]);
                 }
             }
             self.turned.push(turned);
@@ -186,8 +187,8 @@ fn own_block(
         for i in (0..rows.count).filter(|&i| !softness[i].is_nan()) {
             for j in (0..rows.count).filter(|&j| !softness[j].is_nan()) {
                 let (a, b) = (&rows.rows[i], &rows.rows[j]);
-                block[i][j] += inverse_mass * a.linear.dot(b.linear)
-                    + a.angular[side].dot(turned[side][j]);
+                block[i][j] +=
+                    inverse_mass * a.linear.dot(b.linear) + a.angular[side].dot(turned[side][j]);
             }
         }
     }

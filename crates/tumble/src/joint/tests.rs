@@ -105,7 +105,11 @@ fn a_chain_of_hinges_keeps_its_energy_and_its_joints() {
     let energy = world.energy();
     assert!(worst < 1e-13, "{worst:e}");
     assert!(energy.kinetic > 1.0);
-    assert!((energy.total() - start).abs() < 1e-3 * energy.kinetic, "{} {energy:?}", energy.total() - start);
+    assert!(
+        (energy.total() - start).abs() < 1e-3 * energy.kinetic,
+        "{} {energy:?}",
+        energy.total() - start
+    );
 }
 
 /// In world axes: x is free.
@@ -159,7 +163,10 @@ fn friction_of_a_slider_stops_it_where_coulomb_says_and_holds_it() {
     assert!(world.body(0).velocity().length() < 1e-13);
     let energy = world.energy();
     assert!((energy.joint_friction - 1.0).abs() < 1e-5, "{energy:?}");
-    assert!((energy.work - 0.5).abs() < 1e-5 && (energy.total() - start).abs() < 1e-11, "{energy:?}");
+    assert!(
+        (energy.work - 0.5).abs() < 1e-5 && (energy.total() - start).abs() < 1e-11,
+        "{energy:?}"
+    );
 }
 
 #[test]

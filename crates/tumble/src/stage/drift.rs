@@ -20,7 +20,9 @@ fn drift_where(batch: &mut Batch, h: f64, may_touch: bool) {
     let bodies = model.bodies[batch.first..].iter().zip(&mut *batch.bodies);
     let mut drag_loss = batch.workspaces[0].totals.drag;
     let joints = &model.joints;
-    for (index, ((body, state), &body_may_touch)) in (batch.first..).zip(bodies.zip(&*batch.may_touch)) {
+    for (index, ((body, state), &body_may_touch)) in
+        (batch.first..).zip(bodies.zip(&*batch.may_touch))
+    {
         // bodies with joints fly together
         if body_may_touch == may_touch && body.is_free() && !joints.acts_on(index) {
             drag_loss += drift_body(model, body, state, h);

@@ -13,7 +13,16 @@ use crate::kinematics::Kinematics;
 pub fn wall_contact(batch: &mut Batch, h: f64) {
     let since_kick = SinceKick::at_kick(batch.model, batch.time);
     let Batch {
-        model, first, bodies, springs, may_touch, forces, next_springs, workspaces, start, ..
+        model,
+        first,
+        bodies,
+        springs,
+        may_touch,
+        forces,
+        next_springs,
+        workspaces,
+        start,
+        ..
     } = batch;
     let predicts = model.has_body_contact && h != 0.0;
     let workspace = &mut workspaces[0];

@@ -5,8 +5,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
-use super::joints::IteratedJoints;
 use super::bodies::{LaneInertia, LaneMotion, Velocities};
+use super::joints::IteratedJoints;
 use super::law::relative_velocity;
 use super::normal_impulse::normal_impulse;
 use super::rows::{Block, Pack, Row, Rows};
