@@ -1,6 +1,6 @@
 //! A scene: its bodies, its critical time step, and what each integrator would cost.
 
-use tumble::{Integrator, World};
+use tumble::{Integrator, JointKind, World};
 use tumble_io::on_one_line;
 use tumble_io::scene::{LoadOptions, Scene, StepLimits};
 
@@ -29,6 +29,7 @@ pub fn scene_info(name: &str, sets: &[String]) -> Result<(), Failure> {
     let limits = StepLimits::new(scene, world);
     let mut rows = about(scene, world);
     rows.extend(given_mass(scene, world));
+    rows.extend(joints(world));
     rows.extend(steps(scene, &limits));
     rows.extend(choices(scene, &limits));
     print(&wrapped_columns(&rows))
@@ -88,6 +89,22 @@ fn given_mass(scene: &Scene, world: &World) -> Vec<Row> {
 }
 
 /// The step of the scene, and what limits it.
+/// The joints, by kind.
+fn joints(world: &World) -> Option<(&'static str, String)> {
+    let joints = &world.model().joints.list;
+    if joints.is_empty() {
+        return None;
+    }
+    let of_kind = |kind: &JointKind| joints.iter().filter(|joint| joint.kind == *kind).count();
+    let kinds = JointKind::ALL.iter().filter(|kind| of_kind(kind) > 0);
+    let kinds: Vec<_> = kinds.map(|kind| format!("{} {}", of_kind(kind), kind.name())).collect();
+    let redundant = match world.redundant_constraints() {
+        0 => String::new(),
+        count => format!("; {count} of their constraints follow from the others"),
+    };
+    Some(("joints", kinds.join(", ") + &redundant))
+}
+
 fn steps(scene: &Scene, limits: &StepLimits) -> Vec<Row> {
     let mut rows = vec![("dt", format!("{} s", step(scene.dt)))];
     let Some(critical) = &limits.critical else {

@@ -12,11 +12,13 @@ mod flight;
 mod friction;
 mod implicit;
 mod invariance;
+mod joints;
 mod kinematic;
 mod ledger;
 mod order;
 mod remeshing;
 mod restitution;
+mod runge_kutta;
 mod setup;
 
 pub use check::{Case, Check, Outcome};
@@ -59,6 +61,18 @@ pub const CASES: &[Case] = &[
     implicit::SLOPE,
     implicit::CRADLE,
     remeshing::REMESHING,
+    joints::PENDULUM,
+    joints::DOUBLE,
+    joints::SPHERICAL,
+    joints::KAPITZA,
+    joints::FOUCAULT,
+    joints::GYROSCOPE,
+    joints::SLIDER_CRANK,
+    joints::FOUR_BAR,
+    joints::CHAIN,
+    joints::DRIVEN,
+    joints::FRICTION,
+    joints::ORBIT,
     invariance::SCALE,
     invariance::WALLS,
     ledger::SCENES,

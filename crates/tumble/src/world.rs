@@ -55,11 +55,9 @@ impl World {
         };
         // half of the impulse before the step and half after
         let h = 0.5 * self.model.dt;
-        self.mouse_spring_work +=
-            stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
+        self.mouse_spring_work += self.apply_mouse_spring(&spring, h);
         self.advance(keeps)?;
-        self.mouse_spring_work +=
-            stage::apply_mouse_spring(&self.model, &mut self.state, &spring, h);
+        self.mouse_spring_work += self.apply_mouse_spring(&spring, h);
         Ok(())
     }
 
@@ -70,6 +68,11 @@ impl World {
             before => *before = keeps.then(|| Box::new(self.state.clone())),
         }
         step(&self.model, &mut self.state, &mut self.scratch)
+    }
+
+    fn apply_mouse_spring(&mut self, spring: &MouseSpring, h: f64) -> f64 {
+        let all = (&mut self.state, &mut self.scratch);
+        stage::apply_mouse_spring(&self.model, all, spring, h)
     }
 
     /// Advances time by `count` steps: as many calls of [`World::step`], but threads stay awake between them, so that it is faster.

@@ -80,7 +80,8 @@ impl<'a> RunLoop<'a> {
         folder.write_file(SUMMARY_FILE, json.as_bytes())?;
         let warnings = self.world.deepest_body_contact().map(|deepest| deepest.warning());
         let warnings = warnings.into_iter().collect();
-        Ok(FinishedRun { summary, energy, steps_here, notes: notes(&self.scene), warnings })
+        let notes = notes(&self.scene, self.world.redundant_constraints());
+        Ok(FinishedRun { summary, energy, steps_here, notes, warnings })
     }
 
     fn step_to_end(&mut self, watch: &mut dyn FnMut(Progress) -> bool) -> Result<(), RunError> {
@@ -145,10 +146,17 @@ impl<'a> RunLoop<'a> {
     }
 }
 
-/// Notes on properties of the scene that the user may not expect.
-fn notes(scene: &Scene) -> Vec<String> {
+/// Notes on properties of the scene that the user may not expect; `redundant` constraints of its joints follow from others.
+fn notes(scene: &Scene, redundant: usize) -> Vec<String> {
     let mut notes = scene.mesh_notes();
     notes.extend(surface_note(scene));
+    if redundant > 0 {
+        let plural = if redundant == 1 { " follows" } else { "s follow" };
+        notes.push(format!(
+            "{redundant} constraint{plural} from the others, as in a plane linkage of hinges: the motion is right, but how these share forces \
+             is not determined, and joints.csv shows them as 0"
+        ));
+    }
     notes
 }
 

@@ -5,7 +5,6 @@
 //! the simulator.
 
 mod plane;
-mod runge_kutta;
 mod spheres;
 mod touch;
 

@@ -7,9 +7,9 @@ use tumble::{
     Primitive, Shape, World,
 };
 
-use super::runge_kutta::integrate;
 use super::{AT_LIMIT, Motion, order_check};
 use crate::check::{Case, Check, Error, Outcome};
+use crate::runge_kutta::integrate;
 use crate::setup::{FLOOR, G, ball, mesh_body, step_until};
 
 pub(crate) const CASE: Case = Case {

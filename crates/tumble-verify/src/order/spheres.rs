@@ -6,9 +6,9 @@ use tumble::{
     Body, DVec3, Damping, Material, Motion as BodyMotion, Oscillation, Overlaps, Prescribed, World,
 };
 
-use super::runge_kutta::integrate;
 use super::{AT_LIMIT, Motion, order_check};
 use crate::check::{Case, Check, Error, Outcome};
+use crate::runge_kutta::integrate;
 use crate::setup::{ball, step_until};
 
 pub(crate) const CASE: Case = Case {

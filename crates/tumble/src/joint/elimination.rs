@@ -43,11 +43,25 @@ pub(crate) struct Coupling {
     pub sides: [u8; 2],
 }
 
+/// A diagonal block as L D Lᵀ.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Pivots {
+    /// L, below its diagonal of ones.
+    lower: Block,
+    /// D; 0 of rows that are left out.
+    pub diagonal: RowValues,
+    /// 1/D, 0 likewise.
+    inverse: RowValues,
+}
+
 /// The matrix, and its elimination.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Matrix {
-    /// Diagonal blocks, by place in the order; after [`Elimination::factor`] their inverses.
+    /// Diagonal blocks, by place in the order.
     pub diagonal: Vec<Block>,
+    /// Those after the elimination.
+    pub pivots: Vec<Pivots>,
+    /// Blocks B below the diagonal; after the elimination B L⁻ᵀ.
     pub blocks: Vec<Block>,
 }
 
@@ -162,17 +176,22 @@ impl Elimination {
     }
 
     /// Eliminates. Rows without a diagonal element are left out.
+    ///
+    /// It works with the triangular factors of the blocks: with their inverses, rounding errors of rows of large mobility would hide that
+    /// others are dependent.
     pub fn factor(&self, matrix: &mut Matrix) {
         let mut targets = self.targets.iter();
-        let Matrix { diagonal, blocks } = matrix;
+        let Matrix { diagonal, pivots, blocks } = matrix;
         let originals: Vec<RowValues> =
             diagonal.iter().map(|block| std::array::from_fn(|row| block[row][row])).collect();
+        pivots.clear();
         for place in 0..self.order.len() {
-            let inverse = inverse(&diagonal[place], &originals[place]);
-            diagonal[place] = inverse;
+            let own = Pivots::new(&diagonal[place], &originals[place]);
+            pivots.push(own);
             let column = self.column(place);
             for b in column.clone() {
-                let scaled = product(&blocks[b], &inverse);
+                blocks[b] = own.reduced(&blocks[b]);
+                let scaled = own.divided(&blocks[b]);
                 for a in column.start..=b {
                     let update = product_with_transpose(&scaled, &blocks[a]);
                     let Some(&target) = targets.next() else { return };
@@ -189,9 +208,10 @@ impl Elimination {
 
     /// Solves S x = `values`, in place; `values` are by joint. Rows that are left out get 0.
     pub fn solve(&self, matrix: &Matrix, values: &mut [RowValues]) {
-        let Matrix { diagonal, blocks } = matrix;
+        let Matrix { pivots, blocks, .. } = matrix;
         for (place, &joint) in self.order.iter().enumerate() {
-            let y = times(&diagonal[place], &values[joint as usize]);
+            let y = pivots[place].forward(&values[joint as usize]);
+            values[joint as usize] = y;
             for at in self.column(place) {
                 let later = &mut values[self.order[self.later[at] as usize] as usize];
                 let update = times(&blocks[at], &y);
@@ -200,58 +220,75 @@ impl Elimination {
         }
         for (place, &joint) in self.order.iter().enumerate().rev() {
             let mut y = values[joint as usize];
+            let own = &pivots[place];
             for at in self.column(place) {
                 let later = values[self.order[self.later[at] as usize] as usize];
                 for (column, value) in y.iter_mut().enumerate() {
-                    *value -=
-                        (0..MAX_ROWS).map(|row| blocks[at][row][column] * later[row]).sum::<f64>();
+                    let sum: f64 =
+                        (0..MAX_ROWS).map(|row| blocks[at][row][column] * later[row]).sum();
+                    *value -= sum * own.inverse[column];
                 }
             }
-            values[joint as usize] = times(&diagonal[place], &y);
+            values[joint as usize] = own.backward(y);
         }
     }
 }
 
-/// The inverse of a symmetric block on its independent rows, 0 elsewhere. `original` is its diagonal before the elimination of others.
-fn inverse(block: &Block, original: &RowValues) -> Block {
-    // L D Lᵀ
-    let mut l = Block::default();
-    let mut d = RowValues::default();
-    for row in 0..MAX_ROWS {
-        for column in 0..row {
-            let sum: f64 = (0..column).map(|k| l[row][k] * l[column][k] * d[k]).sum();
-            l[row][column] =
-                if d[column] > 0.0 { (block[row][column] - sum) / d[column] } else { 0.0 };
-        }
-        let sum: f64 = (0..row).map(|k| l[row][k] * l[row][k] * d[k]).sum();
-        let pivot = block[row][row] - sum;
-        d[row] = if pivot > DEPENDENT * original[row] { pivot } else { 0.0 };
-        l[row][row] = 1.0;
-    }
-    // column by column of the inverse
-    let mut inverse = Block::default();
-    for column in (0..MAX_ROWS).filter(|&column| d[column] > 0.0) {
-        let mut x = RowValues::default();
-        x[column] = 1.0;
-        for row in column + 1..MAX_ROWS {
-            x[row] = -(column..row).map(|k| l[row][k] * x[k]).sum::<f64>();
-        }
-        for row in (0..MAX_ROWS).rev() {
-            let value = if d[row] > 0.0 { x[row] / d[row] } else { 0.0 };
-            let sum: f64 = (row + 1..MAX_ROWS).map(|k| l[k][row] * x[k]).sum();
-            x[row] = if d[row] > 0.0 { value - sum } else { 0.0 };
-        }
+impl Pivots {
+    /// Those of a symmetric block; `original` is its diagonal before the elimination of others.
+    fn new(block: &Block, original: &RowValues) -> Self {
+        let mut pivots = Self::default();
+        let Self { lower, diagonal, inverse } = &mut pivots;
         for row in 0..MAX_ROWS {
-            inverse[row][column] = x[row];
+            for column in 0..row {
+                let sum: f64 =
+                    (0..column).map(|k| lower[row][k] * lower[column][k] * diagonal[k]).sum();
+                lower[row][column] = (block[row][column] - sum) * inverse[column];
+            }
+            let sum: f64 = (0..row).map(|k| lower[row][k] * lower[row][k] * diagonal[k]).sum();
+            let pivot = block[row][row] - sum;
+            if pivot > DEPENDENT * original[row] {
+                (diagonal[row], inverse[row]) = (pivot, 1.0 / pivot);
+            }
         }
+        pivots
     }
-    inverse
-}
 
-fn product(a: &Block, b: &Block) -> Block {
-    std::array::from_fn(|row| {
-        std::array::from_fn(|column| (0..MAX_ROWS).map(|k| a[row][k] * b[k][column]).sum())
-    })
+    /// B L⁻ᵀ, 0 in the columns of rows that are left out.
+    fn reduced(&self, block: &Block) -> Block {
+        let mut reduced = *block;
+        for row in &mut reduced {
+            for column in 0..MAX_ROWS {
+                let sum: f64 = (0..column).map(|k| row[k] * self.lower[column][k]).sum();
+                row[column] = if self.diagonal[column] > 0.0 { row[column] - sum } else { 0.0 };
+            }
+        }
+        reduced
+    }
+
+    /// W D⁻¹.
+    fn divided(&self, block: &Block) -> Block {
+        block.map(|row| std::array::from_fn(|column| row[column] * self.inverse[column]))
+    }
+
+    /// D⁻¹ L⁻¹ y.
+    fn forward(&self, y: &RowValues) -> RowValues {
+        let mut z = RowValues::default();
+        for row in 0..MAX_ROWS {
+            let sum: f64 = (0..row).map(|k| self.lower[row][k] * z[k]).sum();
+            z[row] = if self.diagonal[row] > 0.0 { y[row] - sum } else { 0.0 };
+        }
+        std::array::from_fn(|row| z[row] * self.inverse[row])
+    }
+
+    /// L⁻ᵀ y, 0 in rows that are left out.
+    fn backward(&self, mut y: RowValues) -> RowValues {
+        for row in (0..MAX_ROWS).rev() {
+            let sum: f64 = (row + 1..MAX_ROWS).map(|k| self.lower[k][row] * y[k]).sum();
+            y[row] = if self.diagonal[row] > 0.0 { y[row] - sum } else { 0.0 };
+        }
+        y
+    }
 }
 
 fn product_with_transpose(a: &Block, b: &Block) -> Block {

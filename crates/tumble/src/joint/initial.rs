@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DVec3};
 
+use super::elimination::Pivots;
 use super::rows::{MAX_ROWS, RowValues};
 use super::system::{System, Twist};
 use super::work::set_twists;
@@ -148,10 +149,10 @@ pub(crate) fn redundant_constraints(model: &Model, state: &State) -> usize {
     system.set_states(model, &state.bodies);
     let softness = softness(model);
     system.factor(model, &softness);
-    let places = model.joints.elimination.order.iter().zip(&system.matrix.diagonal);
-    let of_joint = |(joint, inverse): (&u32, &[[f64; MAX_ROWS]; MAX_ROWS])| {
+    let places = model.joints.elimination.order.iter().zip(&system.matrix.pivots);
+    let of_joint = |(joint, pivots): (&u32, &Pivots)| {
         let count = model.joints.list[*joint as usize].constraint_count();
-        (0..count).filter(|&row| inverse[row][row] == 0.0).count()
+        pivots.diagonal[..count].iter().filter(|pivot| **pivot == 0.0).count()
     };
     places.map(of_joint).sum()
 }

@@ -6,7 +6,7 @@ use super::definition::JointKind;
 use super::model::{JointModel, Place};
 use super::rows::JointRows;
 use super::system::{System, Twist};
-use super::work::set_twists;
+use super::work::twist;
 use crate::{Model, State};
 
 /// The coordinate of a joint and its rate, as [`JointView`](crate::JointView) gives them.
@@ -17,10 +17,8 @@ pub(crate) fn coordinate_and_rate(model: &Model, state: &State, index: usize) ->
     };
     let places = joint.bodies.map(place);
     let rows = JointRows::new(joint, places);
-    let mut twists = Vec::new();
-    set_twists(model, &state.bodies, &mut twists);
-    let twists =
-        joint.bodies.map(|body| body.map_or_else(Twist::default, |body| twists[body as usize]));
+    let twist = |body: u32| twist(&model.bodies[body as usize], &state.bodies[body as usize]);
+    let twists = joint.bodies.map(|body| body.map_or_else(Twist::default, twist));
     if joint.kind == JointKind::Ball {
         return ball_angle(joint, places, twists);
     }

@@ -57,7 +57,7 @@ impl System {
             self.turned.push(turned);
         }
         let elimination = &joints.elimination;
-        let Matrix { diagonal, blocks } = &mut self.matrix;
+        let Matrix { diagonal, blocks, .. } = &mut self.matrix;
         diagonal.clear();
         for &joint in &elimination.order {
             let index = joint as usize;

@@ -3,7 +3,7 @@
 use super::kick::JointKick;
 use super::rows::RowValues;
 use super::system::{System, Twist};
-use crate::{BodyState, Model, State, Wrench};
+use crate::{BodyModel, BodyState, Model, State, Wrench};
 
 /// A joint whose constraints could not be kept.
 #[derive(Clone, Copy, Debug)]
@@ -66,6 +66,26 @@ impl JointWork {
         self.start_coordinates.extend(state.joints.iter().map(|joint| joint.coordinate));
     }
 
+    /// Applies an impulse to a joined body at fixed poses, with the impulses of the joints that it leads to. Returns its work (J).
+    pub fn push(&mut self, model: &Model, state: &mut State, body: usize, impulse: Wrench) -> f64 {
+        self.start_coordinates.clear();
+        self.start_coordinates.extend(state.joints.iter().map(|joint| joint.coordinate));
+        // forces have no time to act, but limits hold
+        self.kick.begin(model, state, &self.start_coordinates, 0.0);
+        self.kick.push(model, body, impulse);
+        self.kick.solve(model);
+        let (v, omega) = self.kick.mean_twist(body);
+        let mut apply = |body: usize, Wrench { force, torque }: Wrench| {
+            if model.bodies[body].is_free() {
+                state.bodies[body].velocity += force / model.bodies[body].mass;
+                state.bodies[body].angular_momentum += torque;
+            }
+        };
+        apply(body, impulse);
+        self.kick.account(model, &mut [], apply);
+        impulse.force.dot(v) + impulse.torque.dot(omega)
+    }
+
     /// Calls `set` with the mean acceleration (m/s²) of each joined free body in the flight before the kick of a step of length `h` (s).
     pub fn set_accelerations(
         &self,
@@ -95,9 +115,12 @@ impl JointWork {
 pub(crate) fn set_twists(model: &Model, states: &[BodyState], twists: &mut Vec<Twist>) {
     twists.resize(states.len(), Twist::default());
     for &index in &model.joints.bodies {
-        let (body, state) = (&model.bodies[index as usize], &states[index as usize]);
-        let rotation = glam::DMat3::from_quat(state.orientation);
-        let omega = body.angular_velocity(rotation, state.angular_momentum);
-        twists[index as usize] = (state.velocity, omega);
+        twists[index as usize] = twist(&model.bodies[index as usize], &states[index as usize]);
     }
+}
+
+/// Velocity and angular velocity of a body.
+pub(crate) fn twist(body: &BodyModel, state: &BodyState) -> Twist {
+    let rotation = glam::DMat3::from_quat(state.orientation);
+    (state.velocity, body.angular_velocity(rotation, state.angular_momentum))
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::kinematics::Kinematics;
-use crate::{BodyModel, BodyState, Model, State, Wrench};
+use crate::{BodyModel, BodyState, Model, Scratch, State, Wrench};
 
 /// Rate λ (1/s) at which the particle approaches the target, critically damped, where the step allows it.
 const RATE: f64 = 25.0;
@@ -29,9 +29,19 @@ pub struct MouseSpring {
 ///
 /// # Panics
 /// When there is no such body or particle; [`World::set_mouse_spring`](crate::World::set_mouse_spring) checks that.
-pub fn apply_mouse_spring(model: &Model, state: &mut State, spring: &MouseSpring, h: f64) -> f64 {
-    let (body, state) = (&model.bodies[spring.body], &mut state.bodies[spring.body]);
-    let wrench = spring_wrench(body, state, spring, model.dt);
+pub fn apply_mouse_spring(
+    model: &Model,
+    (state, scratch): (&mut State, &mut Scratch),
+    spring: &MouseSpring,
+    h: f64,
+) -> f64 {
+    let body = &model.bodies[spring.body];
+    let wrench = spring_wrench(body, &state.bodies[spring.body], spring, model.dt);
+    if model.joints.acts_on(spring.body) {
+        let impulse = Wrench { force: wrench.force * h, torque: wrench.torque * h };
+        return scratch.joints.push(model, state, spring.body, impulse);
+    }
+    let state = &mut state.bodies[spring.body];
     let mean = Kinematics::new(body, state).at_mid_kick(&wrench, h);
     state.velocity += wrench.force * (h / body.mass);
     state.angular_momentum += wrench.torque * h;

@@ -1,7 +1,7 @@
 //! The classical Runge–Kutta method.
 
 /// Advances `y` from the time `from` to `until` (s) in `steps` steps; `project` puts each new state back onto its constraints.
-pub(super) fn integrate<const N: usize>(
+pub(crate) fn integrate<const N: usize>(
     y: &mut [f64; N],
     (from, until): (f64, f64),
     steps: usize,
