@@ -306,3 +306,115 @@ fn subtract(from: &mut Block, what: &Block) {
 fn times(a: &Block, x: &RowValues) -> RowValues {
     std::array::from_fn(|row| (0..MAX_ROWS).map(|k| a[row][k] * x[k]).sum())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers from −1 to 1.
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        }
+
+        /// Not far from `scale` times the identity, so that the matrix is well conditioned.
+        fn block(&mut self, scale: f64) -> Block {
+            std::array::from_fn(|row| {
+                let diagonal = |column| if row == column { scale } else { 0.0 };
+                std::array::from_fn(|column| diagonal(column) + 0.1 * self.next())
+            })
+        }
+    }
+
+    /// Gradients of each joint for its bodies, and the matrix that they make.
+    fn system(joints: &[[Option<u32>; 2]]) -> (Elimination, Vec<[Block; 2]>, Matrix) {
+        let mut random = Random(joints.len() as u64);
+        let gradients: Vec<_> =
+            joints.iter().map(|_| [random.block(1.0), random.block(-0.6)]).collect();
+        let elimination = Elimination::new(joints);
+        let mut matrix = Matrix::default();
+        for &joint in &elimination.order {
+            let mut block = Block::default();
+            for (gradient, body) in gradients[joint as usize].iter().zip(joints[joint as usize]) {
+                if body.is_some() {
+                    subtract(&mut block, &product_with_transpose(gradient, gradient));
+                }
+            }
+            matrix.diagonal.push(block.map(|row| row.map(|x| -x)));
+        }
+        matrix.blocks = vec![Block::default(); elimination.block_count()];
+        for Coupling { later, earlier, block, sides: [a, b] } in &elimination.couplings {
+            let [a, b] = [
+                &gradients[*later as usize][usize::from(*a)],
+                &gradients[*earlier as usize][usize::from(*b)],
+            ];
+            let mut product = product_with_transpose(a, b);
+            product.iter_mut().flatten().for_each(|x| *x = -*x);
+            subtract(&mut matrix.blocks[*block as usize], &product);
+        }
+        (elimination, gradients, matrix)
+    }
+
+    /// G Gᵀ x, by bodies.
+    fn multiplied(
+        joints: &[[Option<u32>; 2]],
+        g: &[[Block; 2]],
+        x: &[RowValues],
+    ) -> Vec<RowValues> {
+        let mut bodies = BTreeMap::<u32, RowValues>::new();
+        let sides = || {
+            joints.iter().enumerate().flat_map(|(joint, bodies)| {
+                let of_side =
+                    move |(side, body): (usize, &Option<u32>)| body.map(|body| (joint, side, body));
+                bodies.iter().enumerate().filter_map(of_side).collect::<Vec<_>>()
+            })
+        };
+        for (joint, side, body) in sides() {
+            let sum = bodies.entry(body).or_default();
+            for (row, x) in g[joint][side].iter().zip(&x[joint]) {
+                sum.iter_mut().zip(row).for_each(|(sum, g)| *sum += g * x);
+            }
+        }
+        let mut product = vec![RowValues::default(); joints.len()];
+        for (joint, side, body) in sides() {
+            let update = times(&g[joint][side], &bodies[&body]);
+            product[joint].iter_mut().zip(update).for_each(|(sum, x)| *sum += x);
+        }
+        product
+    }
+
+    #[test]
+    fn chains_trees_stars_and_loops_are_solved() {
+        let chain: Vec<[Option<u32>; 2]> =
+            (0..40u32).map(|k| [Some(k), k.checked_sub(1)]).collect();
+        let tree: Vec<_> = (0..40).map(|k| [Some(k), (k > 0).then(|| (k - 1) / 3)]).collect();
+        let star: Vec<_> = (1..12).map(|k| [Some(k), Some(0)]).collect();
+        // a row of bodies whose ends are joined
+        let ring: Vec<_> = (0..20).map(|k| [Some(k), Some((k + 1) % 20)]).collect();
+        let mut ladder: Vec<_> = (0..15).map(|k| [Some(k), Some(k + 1)]).collect();
+        ladder.extend((0..5).map(|k| [Some(3 * k + 40), Some(3 * k)]));
+        for joints in [chain, tree, star, ring, ladder] {
+            let (elimination, gradients, mut matrix) = system(&joints);
+            elimination.factor(&mut matrix);
+            let mut random = Random(7);
+            let expected: Vec<RowValues> =
+                joints.iter().map(|_| std::array::from_fn(|_| random.next())).collect();
+            let mut x = multiplied(&joints, &gradients, &expected);
+            elimination.solve(&matrix, &mut x);
+            let back = multiplied(&joints, &gradients, &x);
+            let wanted = multiplied(&joints, &gradients, &expected);
+            for (found, wanted) in back.iter().flatten().zip(wanted.iter().flatten()) {
+                assert!((found - wanted).abs() < 1e-8, "{found} {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_chain_and_a_tree_of_bodies_with_two_joints_have_no_further_blocks() {
+        let chain: Vec<_> = (0..1000u32).map(|k| [Some(k), k.checked_sub(1)]).collect();
+        assert_eq!(Elimination::new(&chain).block_count(), 999);
+    }
+}
