@@ -5,6 +5,20 @@ const CREASE = Math.cos((38 * Math.PI) / 180);
 // bodies with at most this many triangles are flat shaded
 const FLAT = 200;
 
+// the box of a shape along its axes, and its smallest half width
+export function boundingBox({ vertices, radius, particle_radius: own }) {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  vertices.forEach((x, i) => {
+    low[i % 3] = Math.min(low[i % 3], x);
+    high[i % 3] = Math.max(high[i % 3], x);
+  });
+  const isEmpty = vertices.length === 0;
+  const half = isEmpty ? [radius, radius, radius] : [0, 1, 2].map((k) => 0.5 * (high[k] - low[k]) + (own ?? 0));
+  const centre = isEmpty ? [0, 0, 0] : [0, 1, 2].map((k) => 0.5 * (high[k] + low[k]));
+  return { centre, half, least: Math.min(...half) || radius };
+}
+
 // Vertices with normals (six floats each: position, normal) and three indices per triangle. A vertex is split where
 // the normals of its triangles differ.
 export function withNormals(vertices, triangles) {

@@ -1,5 +1,6 @@
 // The shapes that show joints: rods and arrows, as lists for arrows.js.
 
+import { boundingBox } from './geometry.js';
 import { HAS_LENGTH, displayedPoses, hasLetGo, isSlack, placeOf } from './joints.js';
 import { add, clamp, conjugate, cross, dot, length, normalize, perpendicular, rotate, scale, sub } from './math.js';
 import { JOINT_COLOURS, rgb } from './palette.js';
@@ -8,6 +9,10 @@ import { jointOf } from './recording.js';
 // radius of a pin, relative to the extent of the view: thick enough to be seen, thin enough to hide little
 const THINNEST = 0.0035;
 const THICKEST = 0.011;
+// least radii of motor arrows, rods and ropes, relative to the extent of the view
+const MOTOR = 0.008;
+const ROD = 0.0016;
+const ROPE = 0.0012;
 const COILS = 9;
 const DASHES = 24;
 
@@ -43,7 +48,9 @@ export class JointShapes {
       const isSelected = index === selected;
       this.colour = rgb(JOINT_COLOURS[isSelected ? 'selected' : 'joint'][themeName]);
       this.motorColour = rgb(JOINT_COLOURS[isSelected ? 'selected' : 'motor'][themeName]);
+      this.extent = extent;
       this.size = this.sizeOf(joint, extent) * (isSelected ? 1.35 : 1);
+      this.motorSize = Math.max(this.size, MOTOR * extent);
       this.back = view.back;
       const place = placeOf(joint, this.poseOf);
       this.arms(joint, place.points);
@@ -54,9 +61,11 @@ export class JointShapes {
   }
 
   // radius of the pin of a joint: a part of the thinner body
-  sizeOf({ bodies }, extent) {
+  sizeOf({ bodies, kind, length: natural }, extent) {
     const thinnest = bodies.reduce((min, body) => (body === null ? min : Math.min(min, this.boxOf(body).least)), Infinity);
-    return clamp(0.6 * thinnest, THINNEST * extent, THICKEST * extent);
+    const size = clamp(0.6 * thinnest, THINNEST * extent, THICKEST * extent);
+    // the links of a chain are shorter than its beads are wide
+    return HAS_LENGTH.has(kind) && natural > 0 ? Math.min(size, 0.15 * natural) : size;
   }
 
   boxOf(body) {
@@ -122,7 +131,7 @@ export class JointShapes {
 
   // an arc with a head around an axis: the way a motor turns, or both ways if it holds a position
   turningArrow({ motor }, axis, centre, rate) {
-    const radius = 4.2 * this.size;
+    const radius = 4.2 * this.motorSize;
     const u = normalize(cross(axis, Math.abs(dot(axis, this.back)) > 0.95 ? perpendicular(this.back) : this.back));
     const v = cross(axis, u);
     const sense = rate < 0 ? -1 : 1;
@@ -130,7 +139,7 @@ export class JointShapes {
     const steps = 18;
     const span = 4.6; // rad
     const look = { colour: this.motorColour };
-    for (let i = 0; i < steps; i++) this.rod(at((span * i) / steps), at((span * (i + 1)) / steps), 0.42 * this.size, look);
+    for (let i = 0; i < steps; i++) this.rod(at((span * i) / steps), at((span * (i + 1)) / steps), 0.42 * this.motorSize, look);
     this.head(at(span), sub(at(span + 0.1), at(span - 0.1)));
     if (motor === 'position') this.head(at(0), sub(at(-0.1), at(0.1)));
   }
@@ -138,7 +147,7 @@ export class JointShapes {
   // the head of an arrow at a point
   head(point, direction) {
     // an arrow of this length is mostly head
-    this.arrows.push({ origin: point, direction: normalize(direction), length: 4 * this.size, colour: this.motorColour, thickness: 0.5 * this.size });
+    this.arrows.push({ origin: point, direction: normalize(direction), length: 4 * this.motorSize, colour: this.motorColour, thickness: 0.55 * this.motorSize });
   }
 
   // a rail along the way, and a sleeve on it
@@ -149,17 +158,17 @@ export class JointShapes {
     // the coordinate is 0 at the start, where both points may differ: count it from the present place
     const place = dot(axis, sub(points[0], points[1]));
     const at = (s) => add(points[1], scale(axis, s));
-    this.rod(at(Math.min(low, place) - margin), at(Math.max(high, place) + margin), 0.45 * size);
+    this.rod(at(Math.min(low, place) - margin), at(Math.max(high, place) + margin), 0.36 * size);
     this.rod(add(points[0], scale(axis, -2.6 * size)), add(points[0], scale(axis, 2.6 * size)), 1.7 * size, { isFlat: true });
     if (joint.motor) this.slidingArrow(joint, axis, points[0], rate);
   }
 
   slidingArrow({ motor }, axis, point, rate) {
     const side = normalize(cross(this.back, axis));
-    const middle = add(point, scale(length(side) > 0 ? side : perpendicular(axis), 3.6 * this.size));
+    const middle = add(point, scale(length(side) > 0 ? side : perpendicular(axis), 3.6 * this.motorSize));
     const way = scale(axis, rate < 0 ? -1 : 1);
-    const [from, to] = [-5, 5].map((s) => add(middle, scale(way, s * this.size)));
-    this.rod(from, to, 0.42 * this.size, { colour: this.motorColour });
+    const [from, to] = [-5, 5].map((s) => add(middle, scale(way, s * this.motorSize)));
+    this.rod(from, to, 0.42 * this.motorSize, { colour: this.motorColour });
     this.head(to, way);
     if (motor === 'position') this.head(from, scale(way, -1));
   }
@@ -168,16 +177,18 @@ export class JointShapes {
   line(joint, points, state) {
     const { size } = this;
     const [a, b] = points;
+    const rope = Math.max(0.16 * size, ROPE * this.extent);
     if (joint.kind === 'distance') {
-      this.rod(a, b, 0.5 * size);
-      points.forEach((point) => this.dot(point, 0.85 * size));
+      const radius = Math.max(0.35 * size, Math.min(ROD * this.extent, 0.08 * length(sub(a, b))));
+      this.rod(a, b, radius);
+      points.forEach((point) => this.dot(point, 1.7 * radius));
     } else if (joint.kind === 'spring') {
       this.spring(a, b);
     } else if (!isSlack(joint, points, state)) {
-      this.rod(a, b, 0.32 * size);
+      this.rod(a, b, rope);
     } else {
       const at = (part) => add(a, scale(sub(b, a), part));
-      for (let i = 0; i < DASHES; i++) this.rod(at(i / DASHES), at((i + 0.5) / DASHES), 0.26 * size, { opacity: 0.7 });
+      for (let i = 0; i < DASHES; i++) this.rod(at(i / DASHES), at((i + 0.5) / DASHES), 0.8 * rope, { opacity: 0.7 });
     }
   }
 
@@ -204,20 +215,6 @@ export class JointShapes {
     this.rod(at(pieces), b, wire);
     [a, b].forEach((point) => this.dot(point, 0.85 * this.size));
   }
-}
-
-// the box of a shape along its axes, and its smallest half width
-function boundingBox({ vertices, radius, particle_radius: own }) {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  vertices.forEach((x, i) => {
-    low[i % 3] = Math.min(low[i % 3], x);
-    high[i % 3] = Math.max(high[i % 3], x);
-  });
-  const isEmpty = vertices.length === 0;
-  const half = isEmpty ? [radius, radius, radius] : [0, 1, 2].map((k) => 0.5 * (high[k] - low[k]) + (own ?? 0));
-  const centre = isEmpty ? [0, 0, 0] : [0, 1, 2].map((k) => 0.5 * (high[k] + low[k]));
-  return { centre, half, least: Math.min(...half) || radius };
 }
 
 const isOutside = ({ centre, half }, point, margin) => point.some((x, k) => Math.abs(x - centre[k]) > half[k] + margin);

@@ -80,3 +80,7 @@ export function hingeDirection(header, snapshot) {
   const axes = header.joints.filter(({ kind }) => kind === 'hinge').map((joint) => placeOf(joint, displayedPoses(snapshot)).axes[0]);
   return axes.length && axes.every((axis) => Math.abs(dot(axis, axes[0])) > 0.999) ? axes[0] : null;
 }
+
+// whether there is something to draw, and what it is called
+export const hasJointLayer = ({ joints, loads }) => joints.length + loads.length > 0;
+export const jointLayerLabel = ({ joints, loads }) => (!loads.length ? 'Joints' : joints.length ? 'Joints, loads' : 'Loads');
