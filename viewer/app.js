@@ -7,6 +7,9 @@ import { Camera, listenToPointers } from './camera.js';
 import { byId, element } from './dom.js';
 import { EnergyPlot } from './energy_plot.js';
 import { count, quantity } from './format.js';
+import { JointList } from './joint_list.js';
+import { JointShapes } from './joint_shapes.js';
+import { hingeDirection } from './joints.js';
 import { helpDialog } from './keyboard.js';
 import { dot, isFiniteVector } from './math.js';
 import { Overlays } from './overlays.js';
@@ -23,7 +26,7 @@ const MAX_PATHS = 64;
 
 export class App {
   constructor() {
-    this.layers = { meshes: true, edges: false, particles: false, paths: true, walls: true };
+    this.layers = { meshes: true, edges: false, particles: false, paths: true, walls: true, joints: true };
     this.selected = null;
     this.following = null;
     this.hovered = null;
@@ -42,10 +45,11 @@ export class App {
   build(rawHeader, recording) {
     const header = decodeHeader(rawHeader);
     this.header = header;
-    this.recording = recording ?? new Recording(header.bodies.length);
+    this.recording = recording ?? new Recording(header.bodies.length, header.joints.length);
     this.snapshot = new Snapshot(header.bodies.length);
     this.snapshot.set(this.recording, this.recording.start);
     this.selected = null;
+    this.selectedJoint = null;
     this.following = null;
     this.player = new Player(this.recording, header.live);
     this.player.addEventListener('change', () => this.changed());
@@ -58,6 +62,9 @@ export class App {
     this.overlays.scan(this.recording, this.snapshot);
     this.updateForceScale();
     this.table = new BodyTable(header, bodyColours(header), (body) => this.select(body));
+    this.jointShapes = new JointShapes(header);
+    this.recording.frames.forEach((frame) => this.jointShapes.extend(frame));
+    this.jointList = new JointList(header, this.player, (joint) => this.selectJoint(joint));
     this.panel = new Panel(byId('panel'), this);
     this.plot = new EnergyPlot(byId('plot'), this.player);
     this.timeline = new Timeline(byId('timeline'), this.player, header, this.timelineActions());
@@ -111,8 +118,7 @@ export class App {
     this.bounds = initialBounds(header, recording);
     this.fittedBounds = this.bounds;
     this.camera = new Camera(header.up);
-    const slope = header.walls.find(({ normal }) => dot(normal, header.up) > 0.1 && dot(normal, header.up) < 0.995);
-    if (slope) this.camera.faceSlope(slope.normal);
+    this.faceScene();
     if (this.webgl === 'none') {
       this.renderer = null;
       const text = 'This browser does not support WebGL2, so the bodies cannot be drawn. Energies and numbers are still shown.';
@@ -122,6 +128,15 @@ export class App {
     }
     if (this.renderer) this.renderer.dispose();
     this.renderer = new Renderer(this.canvas, header, this.bounds, this.webgl === 'software');
+  }
+
+  // turns the camera so that the inclination of a slope, or the motion of a plane mechanism, is visible
+  faceScene() {
+    const { header, snapshot, camera } = this;
+    const slope = header.walls.find(({ normal }) => dot(normal, header.up) > 0.1 && dot(normal, header.up) < 0.995);
+    const hinges = snapshot.frame ? hingeDirection(header, snapshot) : null;
+    if (slope) camera.faceSlope(slope.normal);
+    else if (hinges) camera.faceAlong(hinges);
   }
 
   // registers the event listeners of canvas and buttons; to be called once
@@ -172,7 +187,7 @@ export class App {
     this.camera.margin = { left: 0, right: covered, top: viewport.width < 760 ? 40 : 0, bottom: Math.max(viewport.bottom - below, 0) };
     this.camera.size = [viewport.width, viewport.height];
     this.renderer?.resize(viewport.width, viewport.height);
-    if (!this.userView) this.camera.fit(this.fittedBounds.centre, this.fittedBounds.radius);
+    if (!this.userView) this.camera.fit(this.fittedBounds);
     this.changed();
   }
 
@@ -238,6 +253,7 @@ export class App {
     this.draw();
     this.timeline.tick();
     this.plot.update(this.themeName);
+    this.jointList.updatePlot(this.themeName);
     // numbers are updated at a readable rate
     const now = performance.now();
     if (!player.playing || now - (this.written ?? 0) > 90) {
@@ -251,6 +267,8 @@ export class App {
     const { snapshot, overlays, renderer } = this;
     const view = this.view();
     const arrows = snapshot.frame ? overlays.arrows(snapshot, this.selected, this.themeName) : [];
+    const joints = this.layers.joints && snapshot.frame ? this.jointShapes.list(snapshot, this.selectedJoint, this.themeName, view, this.camera.viewExtent()) : { rods: [], arrows: [] };
+    if (this.layers.joints && snapshot.frame) arrows.push(...overlays.jointArrows(snapshot, this.selectedJoint, this.themeName));
     this.writeLabels(view, arrows);
     if (!renderer) return;
     renderer.resize(...this.camera.size);
@@ -262,7 +280,8 @@ export class App {
       theme: THEMES[this.themeName],
       highlight: (body) => (body === this.selected ? 1 : body === this.hovered ? 0.5 : 0),
       pathColour: (body) => [...renderer.bodies.colours[body], body === this.selected ? 1 : alpha],
-      arrows,
+      rods: joints.rods,
+      arrows: [...arrows, ...joints.arrows],
       ellipsoids: snapshot.frame ? overlays.ellipsoids(snapshot, this.selected) : [],
       thickness: 0.0062 * this.camera.viewExtent(),
       mouseSpring: this.mouseSpring?.ends(this.header, snapshot) ?? null,
@@ -315,7 +334,7 @@ export class App {
   updateHeader(rawHeader) {
     const header = decodeHeader(rawHeader);
     this.header = header;
-    for (const part of [this.overlays, this.table, this.timeline, this.renderer?.bodies]) if (part) part.header = header;
+    for (const part of [this.overlays, this.table, this.timeline, this.jointShapes, this.jointList, this.renderer?.bodies]) if (part) part.header = header;
     this.renderer?.bodies.setWalls();
     this.panel.detailOf = null;
     this.panel.writeFacts();
@@ -331,6 +350,7 @@ export class App {
     if (recording.length === 1) this.player.toLatest();
     // with many bodies the maxima are sampled
     if (this.header.bodies.length < 200 || recording.length % 10 === 1) this.overlays.updateMaxima(recording.frames.at(-1), this.snapshot);
+    this.jointShapes.extend(recording.frames.at(-1));
     this.updateForceScale();
     if (recording.length === 1 && !this.userView) this.resetBounds();
     else if (!this.mouseSpring?.attached) this.updateBounds(recording.frames.at(-1));
@@ -345,7 +365,9 @@ export class App {
     this.fittedBounds = this.bounds;
     this.renderer?.setBounds(this.bounds);
     this.overlays.radius = this.bounds.radius;
-    this.camera.fit(this.bounds.centre, this.bounds.radius);
+    this.snapshot.set(this.recording, this.recording.start);
+    this.faceScene();
+    this.camera.fit(this.bounds);
   }
 
   // floor and light follow the bodies, and so does the camera until the user moves it
@@ -359,7 +381,7 @@ export class App {
     const fittedBounds = boundsFollowing(this.header, frame, this.fittedBounds);
     if (fittedBounds === this.fittedBounds) return;
     this.fittedBounds = fittedBounds;
-    this.camera.fit(fittedBounds.centre, fittedBounds.radius);
+    this.camera.fit(fittedBounds);
   }
 
   // the status of a live run has changed
@@ -454,6 +476,17 @@ export class App {
     this.changed();
   }
 
+  selectJoint(joint) {
+    this.selectedJoint = joint;
+    this.jointList.setSelected(joint);
+    this.changed();
+  }
+
+  clearSelection() {
+    this.selectJoint(null);
+    this.select(null);
+  }
+
   selectNext(by) {
     const { length: bodyCount } = this.header.bodies;
     const from = this.selected ?? (by > 0 ? -1 : 0);
@@ -478,7 +511,7 @@ export class App {
     this.userView = false;
     const { frame } = this.snapshot;
     this.fittedBounds = frame ? boundsOfAll(this.header, this.recording, frame, this.bounds, this.layers.paths) : this.bounds;
-    this.camera.fit(this.fittedBounds.centre, this.fittedBounds.radius);
+    this.camera.fit(this.fittedBounds);
     this.changed();
   }
 

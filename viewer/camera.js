@@ -1,6 +1,6 @@
 // An orbit camera, and the mouse and touch gestures that move it.
 
-import { add, clamp, cross, dot, multiply, normalize, perpendicular, perspective, scale, transform, viewMatrix } from './math.js';
+import { add, clamp, cross, dot, multiply, normalize, perpendicular, perspective, scale, sub, transform, viewMatrix } from './math.js';
 
 // vertical field of view (rad)
 const FOV = (36 * Math.PI) / 180;
@@ -30,15 +30,34 @@ export class Camera {
     this.pitch = 0.2;
   }
 
-  // moves to a distance from which a sphere fits into the view
-  fit(centre, radius) {
+  // looks along a horizontal axis, a little from the side and from above
+  faceAlong(axis) {
+    if (Math.abs(dot(axis, this.up)) > 0.5) return;
+    const front = scale(this.north, -1);
+    const toEye = dot(axis, front) < -1e-6 ? scale(axis, -1) : axis;
+    this.yaw = Math.atan2(dot(toEye, this.east), dot(toEye, front)) + 0.3;
+    this.pitch = 0.16;
+  }
+
+  // moves to a distance from which a sphere, or all given points in it, fit into the view
+  fit({ centre, radius, points }) {
     this.target = centre;
     this.home = { centre, radius };
     const [w, h] = this.freeSize();
     const half = Math.tan(FOV / 2);
     const part = Math.min(h, w) / this.size[1];
     this.distance = (1.02 * radius) / Math.max(half * part, 0.05);
-    this.radius = radius;
+    if (points) this.distance = Math.min(this.distance, this.distanceFor(points, 0.84 * half));
+  }
+
+  // the distance from which all points are seen at most at this slope from the middle of the free area
+  distanceFor(points, half) {
+    const { right, upward, back } = this.axes();
+    const [x, y] = this.freeSize().map((pixels) => Math.max((half * pixels) / this.size[1], 0.05));
+    return points.reduce((most, point) => {
+      const d = sub(point, this.target);
+      return Math.max(most, dot(d, back) + Math.max(Math.abs(dot(d, right)) / x, Math.abs(dot(d, upward)) / y));
+    }, 0);
   }
 
   // size of the area not covered by panels

@@ -1,8 +1,9 @@
 // The energy ledger over time: stacked areas of stored and dissipated energy, and their sum.
 
 import { element } from './dom.js';
-import { quantity, round125 } from './format.js';
+import { quantity } from './format.js';
 import { LEDGER } from './palette.js';
+import { BOTTOM, LEFT, RIGHT, TOP, TimePlot } from './time_plot.js';
 
 // indices into the ledger of a frame; the last two values are derived
 const GRAVITATIONAL = 1;
@@ -10,86 +11,12 @@ const TOTAL = 9;
 const RESIDUAL = 10;
 const MOUSE_WORK = 11;
 const PRESCRIBED_WORK = 12;
-// margins in CSS pixels
-const LEFT = 58;
-const RIGHT = 10;
-const TOP = 8;
-const BOTTOM = 18;
 
-export class EnergyPlot {
+export class EnergyPlot extends TimePlot {
   constructor(parent, player) {
-    this.player = player;
-    this.canvas = element('canvas', { role: 'img', 'aria-label': 'Energy over time' });
-    this.cursor = element('div', { className: 'cursor' });
-    this.hover = element('div', { className: 'cursor hover', hidden: true });
-    this.tip = element('div', { className: 'tip', hidden: true });
+    super(player, 'Energy over time');
     this.legend = element('div', { className: 'legend' });
-    this.area = element('div', { className: 'area' }, this.canvas, this.cursor, this.hover, this.tip);
     parent.replaceChildren(this.legend, this.area);
-    this.key = '';
-    this.listen();
-  }
-
-  listen() {
-    const { area } = this;
-    let isDown = false;
-    const seek = (event) => {
-      this.player.playing = false;
-      // the layout may have changed since the last drawing
-      const box = area.getBoundingClientRect();
-      this.width = box.width;
-      const t = this.timeAt(event.clientX - box.left);
-      const { recording } = this.player;
-      const i = recording.indexAt(t);
-      const next = recording.frames[Math.min(i + 1, recording.length - 1)];
-      if (recording.length) this.player.seek(next.time - t < t - recording.frames[i].time ? next.time : recording.frames[i].time);
-    };
-    area.addEventListener('pointerdown', (event) => {
-      isDown = true;
-      area.setPointerCapture(event.pointerId);
-      seek(event);
-    });
-    area.addEventListener('pointermove', (event) => {
-      if (isDown) seek(event);
-      this.showTip(event.offsetX);
-    });
-    area.addEventListener('pointerup', () => (isDown = false));
-    area.addEventListener('pointercancel', () => (isDown = false));
-    area.addEventListener('pointerleave', () => this.showTip(null));
-  }
-
-  span() {
-    const { recording } = this.player;
-    return [recording.start, recording.end > recording.start ? recording.end : recording.start + 1];
-  }
-
-  timeAt(x) {
-    const [start, end] = this.span();
-    const part = (x - LEFT) / Math.max(this.width - LEFT - RIGHT, 1);
-    return start + Math.min(Math.max(part, 0), 1) * (end - start);
-  }
-
-  xOf(t) {
-    const [start, end] = this.span();
-    return LEFT + ((t - start) / (end - start)) * (this.width - LEFT - RIGHT);
-  }
-
-  // redraws if size, theme or recording have changed, and moves the cursor
-  update(themeName) {
-    const { recording } = this.player;
-    const box = this.area.getBoundingClientRect();
-    if (box.width < 40 || !recording.length) return;
-    this.width = box.width;
-    this.height = box.height;
-    const key = `${box.width} ${box.height} ${themeName} ${recording.length} ${recording.end} ${recording.dropped}`;
-    const now = performance.now();
-    // a live recording changes with every frame: redraw a few times per second
-    if (key !== this.key && (!this.player.live || now - (this.drawn ?? 0) > 150)) {
-      this.key = key;
-      this.drawn = now;
-      this.paint();
-    }
-    this.cursor.style.transform = `translateX(${this.xOf(this.player.time)}px)`;
   }
 
   // the values of all areas at one frame
@@ -123,11 +50,7 @@ export class EnergyPlot {
 
   paint() {
     const { recording } = this.player;
-    const ratio = window.devicePixelRatio || 1;
-    this.canvas.width = Math.round(this.width * ratio);
-    this.canvas.height = Math.round(this.height * ratio);
-    const pen = this.canvas.getContext('2d');
-    pen.scale(ratio, ratio);
+    const pen = this.startPainting();
     this.zero = this.gravitationalZero();
     // at most two frames per pixel
     const step = Math.max(1, Math.floor(recording.length / (2 * this.width)));
@@ -144,7 +67,7 @@ export class EnergyPlot {
     this.scaleY = (this.height - TOP - BOTTOM) / (1.06 * (top - low));
     const y = (value) => this.height - BOTTOM - (value - 1.06 * low) * this.scaleY;
     const style = getComputedStyle(this.area);
-    this.axes(pen, [1.06 * low, 1.06 * top], y, style);
+    this.axes(pen, [1.06 * low, 1.06 * top], 'J', y, style);
     this.fill(pen, frames, rows, used, y);
     this.line(pen, frames, totals, y, style.getPropertyValue('--ink'));
     if (used[GRAVITATIONAL]) this.labelZero(pen, style);
@@ -205,35 +128,6 @@ export class EnergyPlot {
     pen.setLineDash([]);
   }
 
-  axes(pen, [low, top], y, style) {
-    const muted = style.getPropertyValue('--muted');
-    const hair = style.getPropertyValue('--hair');
-    pen.font = `11px ${style.fontFamily}`;
-    pen.fillStyle = muted;
-    pen.strokeStyle = hair;
-    pen.lineWidth = 1;
-    pen.textAlign = 'right';
-    pen.textBaseline = 'middle';
-    const count = Math.max(Math.min(Math.floor(this.height / 34), 5), 2);
-    const step = round125((top - low) / count);
-    for (let k = Math.ceil(low / step); k * step <= top; k++) {
-      const value = k * step;
-      pen.beginPath();
-      pen.moveTo(LEFT, Math.round(y(value)) + 0.5);
-      pen.lineTo(this.width - RIGHT, Math.round(y(value)) + 0.5);
-      pen.stroke();
-      pen.fillText(quantity(value, 'J', 2), LEFT - 6, y(value));
-    }
-    pen.textBaseline = 'top';
-    pen.textAlign = 'center';
-    const [start, end] = this.span();
-    const every = round125((end - start) / Math.max(this.width / 90, 2));
-    for (let t = Math.ceil(start / every) * every; t <= end + 1e-9 * every; t += every) {
-      const x = Math.min(Math.max(this.xOf(t), LEFT + 8), this.width - RIGHT - 12);
-      pen.fillText(`${Number(t.toPrecision(6))} s`, x, this.height - BOTTOM + 4);
-    }
-  }
-
   writeLegend(used, hasMouseWork) {
     const hasPrescribedWork = this.player.recording.frames.some((frame) => this.prescribedWork(frame) !== 0);
     const shown = [...used, hasMouseWork, hasPrescribedWork].map(Number).join('');
@@ -265,14 +159,8 @@ export class EnergyPlot {
 
   // shows the values at the pointer; null hides them
   showTip(x) {
-    const { recording } = this.player;
-    const off = x === null || !recording.length || !this.width;
-    this.hover.hidden = off;
-    this.tip.hidden = off;
-    if (off) return;
-    const frame = recording.frames[recording.indexAt(this.timeAt(x))];
-    const at = this.xOf(frame.time);
-    this.hover.style.transform = `translateX(${at}px)`;
+    const frame = this.frameUnder(x);
+    if (!frame) return;
     const rows = LEDGER.map((part, k) => [part, frame.ledger[k]]).filter((_, k) => this.values?.has(k));
     this.tip.replaceChildren(
       element('b', {}, `${Number(frame.time.toPrecision(6))} s`),
@@ -281,8 +169,5 @@ export class EnergyPlot {
       element('div', { className: 'muted' }, `Residual ${quantity(frame.ledger[RESIDUAL], 'J', 2)}`),
       ...(this.mouseWork(frame) ? [element('div', { className: 'muted' }, `Mouse and edits ${quantity(this.mouseWork(frame), 'J', 4)}`)] : []),
     );
-    const right = at > this.width / 2;
-    this.tip.style.left = right ? '' : `${at + 10}px`;
-    this.tip.style.right = right ? `${this.width - at + 10}px` : '';
   }
 }

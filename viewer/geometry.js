@@ -5,6 +5,20 @@ const CREASE = Math.cos((38 * Math.PI) / 180);
 // bodies with at most this many triangles are flat shaded
 const FLAT = 200;
 
+// the box of a shape along its axes, and its smallest half width
+export function boundingBox({ vertices, radius, particle_radius: own }) {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  vertices.forEach((x, i) => {
+    low[i % 3] = Math.min(low[i % 3], x);
+    high[i % 3] = Math.max(high[i % 3], x);
+  });
+  const isEmpty = vertices.length === 0;
+  const half = isEmpty ? [radius, radius, radius] : [0, 1, 2].map((k) => 0.5 * (high[k] - low[k]) + (own ?? 0));
+  const centre = isEmpty ? [0, 0, 0] : [0, 1, 2].map((k) => 0.5 * (high[k] + low[k]));
+  return { centre, half, least: Math.min(...half) || radius };
+}
+
 // Vertices with normals (six floats each: position, normal) and three indices per triangle. A vertex is split where
 // the normals of its triangles differ.
 export function withNormals(vertices, triangles) {
@@ -159,9 +173,27 @@ export function sphere(rings = 20, segments = 36) {
   return new Float32Array(out);
 }
 
+// A rod along +y with round ends, or with flat ones: as `arrow`, but its ends do not depend on the length; `z` is in
+// radii of the rod.
+export function rod(isRound, segments = 16) {
+  const quarter = [0, 1, 2, 3, 4].map((i) => (Math.PI / 8) * i);
+  const end = isRound ? quarter.map((a) => ({ r: Math.cos(a), head: Math.sin(a) })) : [{ r: 1, head: 0 }, { r: 0, head: 0 }];
+  const start = end.map(({ r, head }) => ({ r, y: 0, head: -head })).reverse();
+  const profile = [...start, ...end.map((point) => ({ ...point, y: 1 }))];
+  return revolve(isRound ? [profile] : [profile.slice(0, 2), profile.slice(1, 3), profile.slice(2)], segments);
+}
+
 // An arrow along +y: profile (x, position along the shaft, z, position along the head) and normal of each triangle
 // corner. The shader scales shaft and head separately.
 export function arrow(segments = 20) {
+  // `y` runs from 0 to 1 along the shaft, `head` from 0 to 1 along the head
+  const shaft = [{ r: 0, y: 0, head: 0 }, { r: 1, y: 0, head: 0 }, { r: 1, y: 1, head: 0 }];
+  const head = [{ r: 1, y: 1, head: 0 }, { r: 2.6, y: 1, head: 0 }, { r: 0, y: 1, head: 1 }];
+  return revolve([shaft, head], segments);
+}
+
+// surfaces of revolution about y through these profiles
+function revolve(profiles, segments) {
   const out = [];
   const ring = (profile) => {
     for (let s = 0; s < profile.length - 1; s++) {
@@ -177,8 +209,6 @@ export function arrow(segments = 20) {
       }
     }
   };
-  // `y` runs from 0 to 1 along the shaft, `head` from 0 to 1 along the head
-  ring([{ r: 0, y: 0, head: 0 }, { r: 1, y: 0, head: 0 }, { r: 1, y: 1, head: 0 }]);
-  ring([{ r: 1, y: 1, head: 0 }, { r: 2.6, y: 1, head: 0 }, { r: 0, y: 1, head: 1 }]);
+  profiles.forEach(ring);
   return new Float32Array(out);
 }

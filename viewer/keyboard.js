@@ -1,6 +1,7 @@
 // The key bindings, and the help dialog that lists them.
 
 import { button, element } from './dom.js';
+import { hasJointLayer, jointLayerLabel } from './joints.js';
 import { QUANTITIES } from './overlays.js';
 
 // The bindings for a run: `keys` as in KeyboardEvent.key, the key shown in the help, the help text and the action.
@@ -26,7 +27,7 @@ export function bindings(app) {
     Bodies: [
       { keys: ['.'], label: '.', text: 'select the next body', action: () => app.selectNext(1) },
       { keys: [','], label: ',', text: 'select the previous body', action: () => app.selectNext(-1) },
-      { keys: ['Escape'], label: 'Esc', text: 'clear the selection', action: () => app.select(null) },
+      { keys: ['Escape'], label: 'Esc', text: 'clear the selection', action: () => app.clearSelection() },
       { keys: ['g'], label: 'G', text: 'drag mode on or off', live: true, action: () => app.toggleDragMode() },
       { keys: ['s'], label: 'S', text: 'save as scene file', live: true, action: () => app.save() },
       { keys: ['c'], label: 'C', text: 'camera follows the body', action: () => app.follow() },
@@ -43,6 +44,7 @@ export function bindings(app) {
       { keys: ['p'], label: 'P', text: 'particles', action: toggle('particles') },
       { keys: ['h'], label: 'H', text: 'paths', action: toggle('paths') },
       { keys: ['w'], label: 'W', text: 'walls', action: toggle('walls') },
+      ...(hasJointLayer(app.header) ? [{ keys: ['j'], label: 'J', text: jointLayerLabel(app.header).toLowerCase(), action: toggle('joints') }] : []),
       { keys: ['i'], label: 'I', text: 'inertia ellipsoid', action: () => app.toggleEllipsoid() },
     ],
     Arrows: [
@@ -112,6 +114,6 @@ export function helpDialog(dialog, app) {
   dialog.replaceChildren(
     element('div', { className: 'top' }, element('h2', { id: 'help-title' }, 'Keys and mouse'), close),
     element('div', { className: 'columns' }, group('Mouse and touch', mouse), ...groups),
-    element('p', { className: 'muted' }, 'Arrows: all forces share one scale, every other quantity has its own; hover over a row of the panel to read the scale. An arrow that is too long is cut off and labelled (cut). Energy plot: the stacked areas are the stored and the dissipated energy, the solid line is their sum, the dotted line is the sum at the start. The numbers are those of energy.csv, with gravitational energy zero at the origin; only the plot uses another zero, which it states.'),
+    element('p', { className: 'muted' }, 'Arrows: all forces share one scale, every other quantity has its own; hover over a row of the panel to read the scale. An arrow that is too long is cut off and labelled (cut). Fˡ and τˡ are force and torque of a load, Fʲ is the force of the selected joint on its first body. Energy plot: the stacked areas are the stored and the dissipated energy, the solid line is their sum, the dotted line is the sum at the start. The numbers are those of energy.csv, with gravitational energy zero at the origin; only the plot uses another zero, which it states.'),
   );
 }

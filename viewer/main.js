@@ -37,7 +37,7 @@ function listen(app) {
 function startRecorded(app, headerNode) {
   const header = JSON.parse(headerNode.textContent);
   const framesNode = byId('tumble-frames');
-  const recording = Recording.fromBytes(decodeBase64(framesNode.textContent), header.bodies.length);
+  const recording = Recording.fromBytes(decodeBase64(framesNode.textContent), header.bodies.length, header.joints.length);
   // frees the memory of the base64 text
   framesNode.remove();
   app.build(header, recording);
@@ -45,10 +45,10 @@ function startRecorded(app, headerNode) {
   if (!app.reducedMotion && recording.length > 1) app.player.play();
 }
 
-// whether two headers have the same shapes, bodies, walls and box
+// whether two headers have the same shapes, bodies, joints, walls and box
 function haveSameScene(a, b) {
-  const scene = ({ shapes, bodies, walls, box }) =>
-    JSON.stringify([shapes, bodies.map(({ name, shape }) => [name, shape]), walls.map(({ normal, offset }) => [normal, offset]), box]);
+  const scene = ({ shapes, bodies, joints, walls, box }) =>
+    JSON.stringify([shapes, bodies.map(({ name, shape }) => [name, shape]), joints, walls.map(({ normal, offset }) => [normal, offset]), box]);
   return a !== null && scene(a) === scene(b);
 }
 

@@ -1,8 +1,9 @@
-// The arrows and ellipsoids at bodies: quantities, colours, scales, and the bodies that have them.
+// The arrows and ellipsoids at bodies: quantities, colours, scales, and the bodies that have them. Arrows of loads and joints.
 
-import { OFFSET, BODY_SIZE } from './recording.js';
+import { OFFSET, BODY_SIZE, jointOf } from './recording.js';
+import { displayedPoses, hasLetGo, jointsAndLoads, loadAt, placeOf } from './joints.js';
 import { add, conjugate, cross, dot, isFiniteVector, length, multiplyQuaternions, rotate, scale } from './math.js';
-import { rgb } from './palette.js';
+import { JOINT_COLOURS, rgb } from './palette.js';
 
 // `value(body, snapshot, header)` is in world axes; quantities with the same `scale` share one length scale
 export const QUANTITIES = [
@@ -18,12 +19,16 @@ export const QUANTITIES = [
     key: 'force', scale: 'force', label: 'Total force', symbol: 'F', unit: 'N', colour: { light: '#2b3036', dark: '#f2f4f6' },
     value: (body, snapshot, header) => {
       const weight = scale(header.gravity, header.bodies[body].mass);
-      return add(add(weight, snapshot.vector(body, OFFSET.force)), drag(body, snapshot, header).force);
+      const others = add(drag(body, snapshot, header).force, jointsAndLoads(body, snapshot, header).force);
+      return add(add(weight, snapshot.vector(body, OFFSET.force)), others);
     },
   },
   {
     key: 'torque', label: 'Total torque', symbol: 'τ', unit: 'N·m', colour: { light: '#b0568d', dark: '#dd94c0' },
-    value: (body, snapshot, header) => add(snapshot.vector(body, OFFSET.torque), drag(body, snapshot, header).torque),
+    value: (body, snapshot, header) => {
+      const others = add(drag(body, snapshot, header).torque, jointsAndLoads(body, snapshot, header).torque);
+      return add(snapshot.vector(body, OFFSET.torque), others);
+    },
   },
   {
     key: 'velocity', label: 'Velocity', symbol: 'v', unit: 'm/s', colour: { light: '#3d9ad1', dark: '#6fc3f2' },
@@ -148,20 +153,37 @@ export class Overlays {
       const perUnit = this.metresPerUnit(quantity, bodies);
       for (const body of bodies) {
         const value = quantity.value(body, snapshot, this.header);
-        const l = length(value);
-        const fullLength = l * perUnit;
-        // the force of an impact is many times the weight: its arrow is cut off and labelled
-        const drawn = Math.min(fullLength, MAX_LENGTH * this.radius);
-        if (!(drawn > 1e-3 * this.radius) || !isFiniteVector(value)) continue;
-        const direction = scale(value, 1 / l);
-        const origin = snapshot.position(body);
-        list.push({
-          origin, direction, length: drawn, colour: rgb(quantity.colour[themeName]),
-          tip: add(origin, scale(direction, drawn)), symbol: quantity.symbol + (drawn < fullLength ? ' (cut)' : ''), css: quantity.colour[themeName],
-        });
+        list.push(...this.arrow(snapshot.position(body), value, perUnit, quantity.symbol, quantity.colour[themeName]));
       }
     }
     return list;
+  }
+
+  // an arrow for a vector, or none if it would be too small to be seen
+  arrow(origin, value, perUnit, symbol, css) {
+    const l = length(value);
+    const fullLength = l * perUnit;
+    // the force of an impact is many times the weight: its arrow is cut off and labelled
+    const drawn = Math.min(fullLength, MAX_LENGTH * this.radius);
+    if (!(drawn > 1e-3 * this.radius) || !isFiniteVector(value)) return [];
+    const direction = scale(value, 1 / l);
+    return [{ origin, direction, length: drawn, colour: rgb(css), tip: add(origin, scale(direction, drawn)), symbol: symbol + (drawn < fullLength ? ' (cut)' : ''), css }];
+  }
+
+  // the arrows of the loads, and of the force of the selected joint on its first body
+  jointArrows(snapshot, selectedJoint, themeName) {
+    const { joints, loads, bodies } = this.header;
+    const poseOf = displayedPoses(snapshot);
+    const perUnit = (key, body) => this.metresPerUnit(QUANTITIES.find((q) => q.key === key), body === null ? bodies.map((_, i) => i) : [body]);
+    const list = loads.flatMap((load) => {
+      const { force, torque, point, position } = loadAt(load, poseOf, snapshot.time);
+      const css = JOINT_COLOURS.load[themeName];
+      return [...this.arrow(point, force, perUnit('force', load.body), 'Fˡ', css), ...this.arrow(position, torque, perUnit('torque', load.body), 'τˡ', css)];
+    });
+    if (selectedJoint === null || hasLetGo(joints[selectedJoint], snapshot.time)) return list;
+    const { points } = placeOf(joints[selectedJoint], poseOf);
+    const { force } = jointOf(snapshot.frame, selectedJoint);
+    return [...list, ...this.arrow(points[0], force, perUnit('force', joints[selectedJoint].bodies[0]), 'Fʲ', JOINT_COLOURS.selected[themeName])];
   }
 
   // Poinsot's inertia ellipsoid: semi-axes proportional to 1/√I

@@ -25,6 +25,14 @@ export const BODY_COLOURS = ['#3f8fc9', '#e8a33d', '#35a383', '#c983ac', '#dd7a4
 // the colour of fixed and prescribed bodies
 export const PRESCRIBED_COLOUR = rgb('#969aa0');
 
+// the colours of joints, of the arrows of motors, of the selected joint, and of loads
+export const JOINT_COLOURS = {
+  joint: { light: '#3c434c', dark: '#dfe4ea' },
+  motor: { light: '#c2342b', dark: '#ff8a7a' },
+  selected: { light: '#d6006e', dark: '#ff5fae' },
+  load: { light: '#6d3fc0', dark: '#b794ff' },
+};
+
 export const THEMES = {
   light: {
     top: rgb('#f7f6f2'),

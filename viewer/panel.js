@@ -1,8 +1,9 @@
-// The side panel: layers, arrows with their values, table of bodies, facts about the run.
+// The side panel: layers, arrows with their values, tables of bodies and joints, facts about the run.
 
 import { OFFSET } from './recording.js';
 import { button, element } from './dom.js';
 import { count, number, quantity, vector } from './format.js';
+import { hasJointLayer, jointLayerLabel } from './joints.js';
 import { length } from './math.js';
 import { QUANTITIES } from './overlays.js';
 
@@ -14,6 +15,9 @@ const LAYERS = [
   { key: 'walls', label: 'Walls', letter: 'W' },
 ];
 
+// a longer list of joints is closed at first
+const MAX_OPEN_JOINTS = 12;
+
 export class Panel {
   constructor(parent, app) {
     this.app = app;
@@ -21,7 +25,8 @@ export class Panel {
     this.values = new Map();
     this.live = element('section', { id: 'live', hidden: !app.header.live });
     this.detail = element('div', { id: 'detail' });
-    parent.replaceChildren(this.live, this.showSection(), this.arrowSection(), this.bodySection(), this.about());
+    const { joints } = app.header;
+    parent.replaceChildren(this.live, this.showSection(), this.arrowSection(), this.bodySection(), ...(joints.length ? [this.jointSection()] : []), this.about());
   }
 
   section(id, title, open, ...children) {
@@ -36,7 +41,8 @@ export class Panel {
 
   showSection() {
     const { app } = this;
-    const rows = LAYERS.map(({ key, label, letter }) =>
+    const layers = hasJointLayer(app.header) ? [...LAYERS, { key: 'joints', label: jointLayerLabel(app.header), letter: 'J' }] : LAYERS;
+    const rows = layers.map(({ key, label, letter }) =>
       this.check(key, label, letter, () => app.layers[key], (on) => {
         app.layers[key] = on;
         app.changed();
@@ -72,6 +78,15 @@ export class Panel {
     this.follow = button('Camera follows the selected body (C)', 'Follow', () => app.follow(), 'Follow');
     this.follow.setAttribute('aria-pressed', 'false');
     return this.section('bodies', app.header.bodies.length === 1 ? 'Body' : `${count(app.header.bodies.length)} bodies`, true, app.table.scroll, this.detail);
+  }
+
+  jointSection() {
+    const { joints } = this.app.header;
+    const { table, detail } = this.app.jointList;
+    const title = joints.length === 1 ? 'One joint' : `${count(joints.length)} joints`;
+    const section = this.section('joints', title, joints.length <= MAX_OPEN_JOINTS, table.scroll, detail);
+    section.addEventListener('toggle', () => this.app.changed());
+    return section;
   }
 
   about() {
@@ -131,6 +146,7 @@ export class Panel {
       if (node.textContent !== text) node.textContent = text;
     }
     app.table.update(snapshot);
+    app.jointList.tick(snapshot);
     this.tickDetail(snapshot);
   }
 

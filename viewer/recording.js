@@ -4,6 +4,7 @@ import { slerp } from './math.js';
 
 const LEDGER_SIZE = 13; // doubles per frame: time, step, eleven columns of the energy ledger
 export const BODY_SIZE = 22; // floats per body
+const JOINT_SIZE = 8; // floats per joint: force and torque on its first body, coordinate, rate
 
 // offset of each quantity in the floats of a body
 export const OFFSET = { position: 0, orientation: 3, velocity: 7, angularVelocity: 10, angularMomentum: 13, force: 16, torque: 19 };
@@ -24,14 +25,18 @@ export function decodeBase64(text) {
 const floats = (text) => new Float32Array(decodeBase64(text).slice().buffer);
 const indices = (text) => new Uint32Array(decodeBase64(text).slice().buffer);
 
-// the header with decoded shapes
+// the header with decoded shapes, and the indices of the joints and loads of each body
 export function decodeHeader(header) {
   const shapes = header.shapes.map((shape) => {
     const vertices = floats(shape.vertices);
     const particles = shape.particles === null ? vertices : floats(shape.particles);
     return { ...shape, vertices, triangles: indices(shape.triangles), particles };
   });
-  return { ...header, shapes, boxPlanes: header.box ? boxPlanes(header) : [] };
+  const jointsOf = header.bodies.map(() => []);
+  const loadsOf = header.bodies.map(() => []);
+  header.joints.forEach(({ bodies }, joint) => bodies.forEach((body) => jointsOf[body]?.push(joint)));
+  header.loads.forEach(({ body }, load) => loadsOf[body].push(load));
+  return { ...header, shapes, jointsOf, loadsOf, boxPlanes: header.box ? boxPlanes(header) : [] };
 }
 
 // the walls that are faces of the box: they come first
@@ -40,36 +45,46 @@ function boxPlanes(header) {
 }
 
 // a frame as typed-array views into the buffer
-export function decodeFrame(buffer, offset, bodyCount) {
+export function decodeFrame(buffer, offset, bodyCount, jointCount) {
   const numbers = new Float64Array(buffer, offset, LEDGER_SIZE);
+  const bodies = offset + 8 * LEDGER_SIZE;
   return {
     time: numbers[0],
     step: numbers[1],
     ledger: numbers.subarray(2),
-    bodies: new Float32Array(buffer, offset + 8 * LEDGER_SIZE, BODY_SIZE * bodyCount),
+    bodies: new Float32Array(buffer, bodies, BODY_SIZE * bodyCount),
+    joints: new Float32Array(buffer, bodies + 4 * BODY_SIZE * bodyCount, JOINT_SIZE * jointCount),
   };
 }
 
-export const frameSize = (bodyCount) => 8 * LEDGER_SIZE + 4 * BODY_SIZE * bodyCount;
+// bytes of one frame: a multiple of eight, as the doubles of the next frame require
+export const frameSize = (bodyCount, jointCount) => 8 * LEDGER_SIZE + 4 * BODY_SIZE * bodyCount + 4 * JOINT_SIZE * jointCount;
+
+// what a joint did in the step before a frame
+export function jointOf(frame, joint) {
+  const [fx, fy, fz, tx, ty, tz, coordinate, rate] = frame.joints.subarray(JOINT_SIZE * joint, JOINT_SIZE * (joint + 1));
+  return { force: [fx, fy, fz], torque: [tx, ty, tz], coordinate, rate };
+}
 
 // The frames of a finished run, or those received from a live run so far.
 export class Recording {
-  constructor(bodyCount) {
+  constructor(bodyCount, jointCount) {
     this.bodyCount = bodyCount;
+    this.jointCount = jointCount;
     this.frames = [];
     // the first frame, which is kept when it is dropped from `frames`
     this.first = null;
     // a live run has no end: keep about 40 MB
-    this.maxFrames = Math.max(64, Math.min(20000, Math.floor(4e7 / frameSize(bodyCount))));
+    this.maxFrames = Math.max(64, Math.min(20000, Math.floor(4e7 / frameSize(bodyCount, jointCount))));
     this.dropped = 0;
   }
 
-  static fromBytes(bytes, bodyCount) {
-    const recording = new Recording(bodyCount);
-    const size = frameSize(bodyCount);
+  static fromBytes(bytes, bodyCount, jointCount) {
+    const recording = new Recording(bodyCount, jointCount);
+    const size = frameSize(bodyCount, jointCount);
     const buffer = bytes.slice().buffer;
     for (let offset = 0; offset + size <= buffer.byteLength; offset += size) {
-      recording.frames.push(decodeFrame(buffer, offset, bodyCount));
+      recording.frames.push(decodeFrame(buffer, offset, bodyCount, jointCount));
     }
     recording.first = recording.frames[0] ?? null;
     return recording;
@@ -89,8 +104,8 @@ export class Recording {
 
   // adds a frame of a live run; returns false if its size is wrong
   push(buffer) {
-    if (buffer.byteLength !== frameSize(this.bodyCount)) return false;
-    const frame = decodeFrame(buffer, 0, this.bodyCount);
+    if (buffer.byteLength !== frameSize(this.bodyCount, this.jointCount)) return false;
+    const frame = decodeFrame(buffer, 0, this.bodyCount, this.jointCount);
     if (this.length && frame.time < this.end) this.clear();
     // a frame of the same time replaces the last one
     if (this.length && frame.time === this.end) this.frames.pop();

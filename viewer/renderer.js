@@ -139,7 +139,7 @@ export class Renderer {
   }
 
   // Draws a snapshot. `options`: layers (meshes, edges, particles, paths, walls), theme, highlight(body),
-  // pathColour(body), arrows, ellipsoids, thickness of arrows, mouseSpring (two points or null).
+  // pathColour(body), rods, arrows, ellipsoids, thickness of arrows, mouseSpring (two points or null).
   draw(view, snapshot, recording, options) {
     const { gl, bodies } = this;
     this.addLight(view);
@@ -168,6 +168,7 @@ export class Renderer {
       this.lines.segment(...options.mouseSpring, [...view.theme.ink, 0.9], 1.2 * this.ratio);
     }
     this.arrows.drawEllipsoids(view, options.ellipsoids, view.theme.ink);
+    this.arrows.drawRods(view, options.rods);
     this.arrows.draw(view, options.arrows, options.thickness);
     gl.disable(gl.BLEND);
     gl.bindVertexArray(null);

@@ -277,6 +277,7 @@ layout(location = 4) in vec4 origin;    // w: length of the arrow
 layout(location = 5) in vec4 direction; // w: radius of the shaft
 layout(location = 6) in vec4 colour;
 uniform mat4 viewProjection;
+uniform float headed;                   // 1: arrows, 0: rods
 out vec3 worldPosition;
 out vec3 worldNormal;
 out vec4 surfaceColour;
@@ -286,9 +287,9 @@ void main() {
   vec3 u = normalize(cross(other, d));
   vec3 v = cross(d, u);
   float thick = direction.w;
-  float head = min(7.0 * thick, 0.6 * origin.w);
-  float slim = head / (7.0 * thick);
-  float along = profile.y * (origin.w - head) + profile.w * head;
+  float head = headed * min(7.0 * thick, 0.6 * origin.w);
+  float slim = mix(1.0, head / (7.0 * thick), headed);
+  float along = profile.y * (origin.w - head) + profile.w * mix(thick, head, headed);
   worldPosition = origin.xyz + thick * slim * (profile.x * u + profile.z * v) + along * d;
   worldNormal = normal.x * u + normal.y * d + normal.z * v;
   surfaceColour = colour;

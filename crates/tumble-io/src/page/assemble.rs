@@ -28,7 +28,7 @@ pub(super) struct Module {
 }
 
 /// All modules. Each imports only from earlier ones.
-pub(super) const MODULES: [Module; 28] = modules![
+pub(super) const MODULES: [Module; 33] = modules![
     "math",
     "format",
     "dom",
@@ -42,14 +42,19 @@ pub(super) const MODULES: [Module; 28] = modules![
     "walls",
     "lines",
     "arrows",
+    "joints",
     "overlays",
+    "joint_shapes",
     "bounds",
     "renderer",
     "picking",
     "player",
     "timeline",
+    "time_plot",
     "energy_plot",
+    "table",
     "body_table",
+    "joint_list",
     "panel",
     "connection",
     "live_controls",
