@@ -51,6 +51,9 @@ for scene in $(target/release/tumble scenes | awk '{ print $1 }'); do
     target/release/tumble run "$scene" --out "$out/$scene"
 done
 
+say "every scene of docs/classics.md"
+docs/classics.sh target/release/tumble
+
 say "physics against theory"
 target/release/tumble verify
 
