@@ -264,6 +264,8 @@ const shownValues = (page) => page.evaluate(() => {
   return Object.fromEntries([...document.querySelectorAll('#joint-detail dt')].map((dt) => [dt.firstChild.textContent, read(dt.nextSibling)]));
 });
 
+const hasNumbers = () => ![undefined, ''].includes(document.querySelector('#joint-detail dd')?.textContent);
+
 async function joints(browser) {
   const page = await open(browser, recorded('slider_crank'));
   await until('the page starts', page, () => window.tumble !== undefined);
@@ -276,7 +278,7 @@ async function joints(browser) {
   check('joints are listed', (await page.locator('#joints .rows .row').count()) === 4);
   for (const [row, name] of [[0, 'bearing'], [3, 'cylinder']]) {
     await page.click(`#joint-${row}`);
-    await page.waitForTimeout(150);
+    await until(`${name} has numbers`, page, hasNumbers);
     const shown = await shownValues(page);
     const expected = jointAt('slider_crank', name, at);
     const pairs = [[shown['|F|'], expected.force], [shown[row ? 'Displacement' : 'Angle'], expected.coordinate], [shown.Rate, expected.rate]];
@@ -317,7 +319,7 @@ async function liveJoints(browser) {
   const page = await open(browser, `http://127.0.0.1:${server.port}/`);
   await until('frames with joints arrive', page, () => window.tumble?.app.recording.length > 5);
   await page.click('#joint-1');
-  await page.waitForTimeout(300);
+  await until('the joint has numbers', page, hasNumbers);
   const before = (await shownValues(page))['|F|'];
   await page.waitForTimeout(600);
   const after = await shownValues(page);
