@@ -6,18 +6,25 @@ import path from 'node:path';
 
 const { WebSocketServer } = createRequire(path.join(import.meta.dirname, '.tools', 'here.js'))('ws');
 
+const LEDGER_BYTES = 104;
 const BODY_FLOATS = 22;
+const JOINT_FLOATS = 8;
 
-// one frame: bodies on circles, and a consistent energy ledger
-function frame(time, step, bodyCount) {
-  const buffer = new ArrayBuffer(88 + 4 * BODY_FLOATS * bodyCount);
+// one frame: bodies on circles, joints with a force of 5 N at the start, and a consistent energy ledger
+function frame(time, step, { bodies: { length: bodyCount }, joints: { length: jointCount } }) {
+  const jointsAt = LEDGER_BYTES + 4 * BODY_FLOATS * bodyCount;
+  const buffer = new ArrayBuffer(jointsAt + 4 * JOINT_FLOATS * jointCount);
   const kinetic = 5 + 5 * Math.cos(time);
-  new Float64Array(buffer, 0, 11).set([time, step, kinetic, 10 - kinetic, 0, 0, 0, 0, 0, 10, 0]);
+  new Float64Array(buffer, 0, 13).set([time, step, kinetic, 10 - kinetic, 0, 0, 0, 0, 0, 0, 0, 10, 0]);
   for (let body = 0; body < bodyCount; body++) {
     const angle = time + body;
-    const floats = new Float32Array(buffer, 88 + 4 * BODY_FLOATS * body, BODY_FLOATS);
+    const floats = new Float32Array(buffer, LEDGER_BYTES + 4 * BODY_FLOATS * body, BODY_FLOATS);
     floats.set([0.5 * Math.cos(angle), 0, 0.5 * Math.sin(angle), Math.cos(angle / 2), 0, Math.sin(angle / 2), 0]);
     floats.set([0, 0, 0, 0, 1, 0, 0, 2, 0], 7);
+  }
+  for (let joint = 0; joint < jointCount; joint++) {
+    const floats = new Float32Array(buffer, jointsAt + 4 * JOINT_FLOATS * joint, JOINT_FLOATS);
+    floats.set([3 + time, 4, 0, 0, 0, joint, time, 1]);
   }
   return buffer;
 }
@@ -54,7 +61,7 @@ export class FakeServer {
   connect(socket) {
     socket.send(JSON.stringify(this.header));
     socket.send(JSON.stringify(this.status));
-    socket.send(frame(this.step * 0.016, this.step, this.header.bodies.length));
+    socket.send(frame(this.step * 0.016, this.step, this.header));
     socket.on('message', (data) => this.receive(socket, JSON.parse(data.toString())));
   }
 
@@ -68,7 +75,7 @@ export class FakeServer {
       this.step = 0;
       this.status.pending = [];
       socket.send(JSON.stringify(this.header));
-      socket.send(frame(0, 0, this.header.bodies.length));
+      socket.send(frame(0, 0, this.header));
     }
     if (type === 'set') {
       const parameter = this.header.parameters.find(({ key }) => key === message.key);
@@ -81,7 +88,7 @@ export class FakeServer {
 
   advance() {
     this.step += 1;
-    this.send(frame(this.step * 0.016, this.step, this.header.bodies.length));
+    this.send(frame(this.step * 0.016, this.step, this.header));
   }
 
   tick() {

@@ -250,13 +250,98 @@ async function withoutWebgl(browser) {
   await closeSilent('without WebGL2', page);
 }
 
-async function live(browser) {
+// the state of a joint in joints.csv at a time
+function jointAt(scene, name, at) {
+  const [, ...lines] = fs.readFileSync(path.join(runs, scene, 'joints.csv'), 'utf8').trim().split('\n');
+  const columns = lines.map((line) => line.split(',')).find(([time, joint]) => joint === name && Math.abs(Number(time) - at) < 1e-9);
+  const [fx, fy, fz, tx, ty, tz, coordinate, rate] = columns.slice(2).map(Number);
+  return { force: Math.hypot(fx, fy, fz), torque: Math.hypot(tx, ty, tz), coordinate, rate };
+}
+
+// the numbers that the panel shows of the selected joint, by their labels
+const shownValues = (page) => page.evaluate(() => {
+  const read = (node) => parseFloat(node.textContent.replaceAll('\u2009', '').replace('−', '-'));
+  return Object.fromEntries([...document.querySelectorAll('#joint-detail dt')].map((dt) => [dt.firstChild.textContent, read(dt.nextSibling)]));
+});
+
+const hasNumbers = () => ![undefined, ''].includes(document.querySelector('#joint-detail dd')?.textContent);
+
+async function joints(browser) {
+  const page = await open(browser, recorded('slider-crank'));
+  await until('the page starts', page, () => window.tumble !== undefined);
+  const at = await page.evaluate(() => {
+    const { time } = tumble.app.recording.frames[40];
+    tumble.seek(time);
+    return time;
+  });
+  check('joints can be hidden', await page.locator('#show-joints').isChecked());
+  check('joints are listed', (await page.locator('#joints .rows .row').count()) === 4);
+  for (const [row, name] of [[0, 'bearing'], [3, 'cylinder']]) {
+    await page.click(`#joint-${row}`);
+    await until(`${name} has numbers`, page, hasNumbers);
+    const shown = await shownValues(page);
+    const expected = jointAt('slider-crank', name, at);
+    const pairs = [[shown['|F|'], expected.force], [shown[row ? 'Displacement' : 'Angle'], expected.coordinate], [shown.Rate, expected.rate]];
+    if (row === 0) pairs.push([shown['|τ|'], expected.torque]);
+    check(`the numbers of ${name} are those of joints.csv`, pairs.every(([a, b]) => Math.abs(a - b) < 2e-3 * Math.abs(b)), JSON.stringify({ shown, expected }));
+  }
+  await page.selectOption('#joint-course', 'coordinate');
+  const plot = await page.locator('#joint-detail .area').boundingBox();
+  await page.mouse.click(plot.x + 58 + (plot.width - 68) * 0.5, plot.y + 40);
+  check('the plot of a joint scrubs', Math.abs((await time(page)) - 2.5) < 0.03, String(await time(page)));
+  check('it shows values', / m$/.test(await page.locator('#joint-detail .tip').innerText()) || (await page.locator('#joint-detail .tip').innerText()).includes('\u202fm'));
+  // the selected joint is drawn in its own colour: some pixels change when joints are hidden
+  const image = () => page.evaluate(() => {
+    const { app } = tumble;
+    const [x, y] = app.camera.project(app.view(), [0, 0, 0.03]);
+    return tumble.pixel(x, y);
+  });
+  const drawn = await image();
+  await page.keyboard.press('j');
+  const hidden = await image();
+  check('J hides the joints', !(await page.locator('#show-joints').isChecked()) && String(drawn) !== String(hidden), `${drawn} and ${hidden}`);
+  await page.keyboard.press('j');
+  await screenshot(page, 'slider-crank');
+  await page.keyboard.press('Escape');
+  check('Escape clears the selected joint', (await page.evaluate(() => tumble.app.selectedJoint)) === null && !(await page.locator('#joint-detail').isVisible()));
+  await closeSilent('joints', page);
+  const plain = await open(browser, recorded('task2'));
+  const found = await plain.evaluate(() => [...document.querySelectorAll('#show-joints, #joints')].length);
+  check('without joints there is neither toggle nor list', found === 0);
+  await plain.keyboard.press('?');
+  check('nor a key', !(await plain.locator('#help').innerText()).includes('joints'));
+  await closeSilent('without joints', plain);
+}
+
+// joints of a live run: numbers and plot follow the frames
+async function liveJoints(browser) {
+  const server = await fakeServer('slider-crank');
+  const page = await open(browser, `http://127.0.0.1:${server.port}/`);
+  await until('frames with joints arrive', page, () => window.tumble?.app.recording.length > 5);
+  await page.click('#joint-1');
+  await until('the joint has numbers', page, hasNumbers);
+  const before = (await shownValues(page))['|F|'];
+  await page.waitForTimeout(600);
+  const after = await shownValues(page);
+  check('the force of a joint follows the frames', before >= 5 && after['|F|'] > before && after['|τ|'] === 1, JSON.stringify({ before, after }));
+  check('its plot too', (await page.evaluate(() => tumble.app.jointList.plot.points().length)) > 10);
+  await closeSilent('live joints', page);
+  await server.close();
+}
+
+// a fake of the live server with the header of a recorded run
+async function fakeServer(scene) {
   const { FakeServer } = await import('./live-server.mjs');
-  const file = fs.readFileSync(path.join(runs, 'task2', 'motion.html'), 'utf8');
+  const file = fs.readFileSync(path.join(runs, scene, 'motion.html'), 'utf8');
   const head = JSON.parse(file.match(/id="tumble-head">([^<]*)</)[1]);
   const html = file.replace(/<script type="application\/json"[^]*?<\/script>\s*<script type="text\/plain"[^]*?<\/script>/, '').replace("connect-src 'none'", "connect-src 'self' ws: wss:");
   const server = new FakeServer(html, head);
   await server.open();
+  return server;
+}
+
+async function live(browser) {
+  const server = await fakeServer('task2');
   const page = await open(browser, `http://127.0.0.1:${server.port}/`);
   const received = (type) => server.received.filter((message) => message.type === type);
   await until('frames arrive', page, () => window.tumble?.app.recording.length > 5);
@@ -309,7 +394,7 @@ async function live(browser) {
 const only = process.argv[4];
 const browser = await launch();
 try {
-  for (const part of [drawing, names, playing, panel, views, phone, autoplay, manyBodies, accessibility, withoutWebgl, live]) {
+  for (const part of [drawing, names, playing, panel, views, phone, autoplay, manyBodies, joints, accessibility, withoutWebgl, live, liveJoints]) {
     if (only && part.name !== only) continue;
     console.log(`\n${part.name}`);
     await part(browser);

@@ -15,7 +15,7 @@ cargo build --release -p tumble-cli --locked
 tumble=$(realpath "${CARGO_TARGET_DIR:-target}")/release/tumble
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
-for scene in task2 task2-cat racket many slope; do
+for scene in task2 task2-cat racket many slope slider-crank; do
     "$tumble" run "$scene" --out "$out/$scene" >/dev/null
 done
 "$tumble" run many --out "$out/thousand" --duration 0.5 --set 'body.1.position=[0.0,2.5,0.0]' \

@@ -259,6 +259,8 @@ export class App {
     if (!player.playing || now - (this.written ?? 0) > 90) {
       this.written = now;
       this.plot.tick(snapshot.frame);
+      // longer numbers in the legend make the plot narrower
+      this.plot.update(this.themeName);
       this.panel.tick(snapshot);
     }
   }

@@ -6,12 +6,17 @@ import { hasLetGo } from './joints.js';
 import { add, length, rotate, scale, sub } from './math.js';
 import { BODY_SIZE } from './recording.js';
 
-// the finite positions of all bodies in a frame; with `header`, those held by joints if there are joints
-function positions({ bodies, time }, header = null) {
-  const held = header?.joints.length ? new Set(header.joints.filter((joint) => !hasLetGo(joint, time)).flatMap((joint) => joint.bodies)) : null;
+// the bodies that joints hold at a time
+function heldBodies({ joints }, time) {
+  const holding = joints.filter((joint) => !hasLetGo(joint, time));
+  return new Set(holding.flatMap((joint) => joint.bodies).filter((body) => body !== null));
+}
+
+// the finite positions of bodies in a frame
+function positions({ bodies }, isCounted = () => true) {
   const list = [];
   for (let at = 0; at < bodies.length; at += BODY_SIZE) {
-    if (held && !held.has(at / BODY_SIZE)) continue;
+    if (!isCounted(at / BODY_SIZE)) continue;
     const p = Array.from(bodies.subarray(at, at + 3));
     if (p.every(Number.isFinite)) list.push(p);
   }
@@ -38,23 +43,29 @@ const sampled = (recording) => {
 function mechanism(header, recording) {
   const { bodies, joints } = header;
   if (!joints.length || bodies.length > 200) return [];
-  const boxes = header.shapes.map(boundingBox);
+  const cornersOf = cornersIn(header);
   const list = joints.flatMap(({ bodies: pair, anchors }) => anchors.filter((_, side) => pair[side] === null));
-  for (const { bodies: floats, time } of sampled(recording)) {
-    const holding = joints.filter((joint) => !hasLetGo(joint, time));
-    for (const body of new Set(holding.flatMap((joint) => joint.bodies))) {
-      if (body === null) continue;
-      const at = BODY_SIZE * body;
-      const position = Array.from(floats.subarray(at, at + 3));
-      const orientation = Array.from(floats.subarray(at + 3, at + 7));
-      const { centre, half } = boxes[bodies[body].shape];
-      for (let i = 0; i < 8; i++) {
-        const corner = centre.map((x, k) => x + ((i >> k) & 1 ? half[k] : -half[k]));
-        list.push(add(position, rotate(orientation, corner)));
-      }
-    }
+  for (const frame of sampled(recording)) {
+    heldBodies(header, frame.time).forEach((body) => list.push(...cornersOf(frame, body)));
   }
-  return list.filter((point) => point.every(Number.isFinite));
+  if (!list.length) return [];
+  // what lies around it is shown too, if it is not much larger
+  const { centre, radius } = sphereAround(list, 0);
+  const around = recording.length ? bodies.map((_, body) => cornersOf(recording.frames[0], body)) : [];
+  return [...list, ...around.filter((corners) => corners.every((p) => length(sub(p, centre)) < 2 * radius)).flat()];
+}
+
+// the finite corners of the box around a body in a frame
+function cornersIn({ shapes, bodies }) {
+  const boxes = shapes.map(boundingBox);
+  return ({ bodies: floats }, body) => {
+    const at = BODY_SIZE * body;
+    const position = Array.from(floats.subarray(at, at + 3));
+    const orientation = Array.from(floats.subarray(at + 3, at + 7));
+    const { centre, half } = boxes[bodies[body].shape];
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((i) => centre.map((x, k) => x + ((i >> k) & 1 ? half[k] : -half[k])));
+    return corners.map((corner) => add(position, rotate(orientation, corner))).filter((point) => point.every(Number.isFinite));
+  };
 }
 
 // The initial bounds: the box; without a box the mechanism, if there is one, or all positions of the bodies.
@@ -73,13 +84,11 @@ export function initialBounds(header, recording) {
   const isNear = (p) => length(sub(p, boxCentre)) < 1.6 * boxRadius;
   const held = box ? [] : mechanism(header, recording);
   if (held.length) {
-    // what lies around the mechanism is shown too
-    const inner = sphereAround(held, 0);
-    const around = recording.length ? positions(recording.frames[0]).filter((p) => length(sub(p, inner.centre)) < 1.6 * inner.radius) : [];
-    const points = [...held, ...around];
-    return { ...sphereAround(points, 0), points };
+    const sphere = sphereAround(held, 0);
+    // at the start of a live run nothing has moved yet: leave some space
+    return header.live ? { ...sphere, radius: 1.5 * sphere.radius } : { ...sphere, points: held };
   }
-  const points = [...corners, ...sampled(recording).flatMap(positions).filter(isNear)];
+  const points = [...corners, ...sampled(recording).flatMap((frame) => positions(frame)).filter(isNear)];
   if (!points.length) return { centre: [0, 0, 0], radius: 2 * size };
   const all = sphereAround(points, 0);
   if (box) return { centre: all.centre, radius: Math.max(all.radius, size) };
@@ -92,7 +101,7 @@ export function boundsOfAll(header, recording, frame, bounds, withPaths) {
   const size = 1.2 * largestRadius(header);
   const { centre, radius } = bounds;
   const past = withPaths ? sampled(recording) : [];
-  const points = [...past, frame].flatMap(positions);
+  const points = [...past, frame].flatMap((one) => positions(one));
   const contains = ({ centre: c, radius: r }) => points.every((p) => length(sub(p, c)) + size <= r);
   if (!points.length || contains(bounds)) return bounds;
   // the old sphere is represented by its ends along the axes
@@ -106,7 +115,9 @@ export function boundsOfAll(header, recording, frame, bounds, withPaths) {
 // that have left it are ignored.
 export function boundsFollowing(header, frame, bounds) {
   const size = 1.2 * largestRadius(header);
-  let points = positions(frame, header);
+  // what a mechanism throws away does not count
+  const held = heldBodies(header, frame.time);
+  let points = positions(frame, (body) => held.size === 0 || held.has(body));
   if (header.box) {
     const inside = points.filter((p) => length(sub(p, bounds.centre)) < 1.6 * bounds.radius);
     if (inside.length) points = inside;

@@ -5,6 +5,8 @@ import { add, clamp, cross, dot, multiply, normalize, perpendicular, perspective
 // vertical field of view (rad)
 const FOV = (36 * Math.PI) / 180;
 const MAX_PITCH = 1.55; // rad
+// CSS pixels at the top that hold name and description of the run
+const TITLE = 60;
 
 export class Camera {
   constructor(up) {
@@ -47,16 +49,19 @@ export class Camera {
     const half = Math.tan(FOV / 2);
     const part = Math.min(h, w) / this.size[1];
     this.distance = (1.02 * radius) / Math.max(half * part, 0.05);
-    if (points) this.distance = Math.min(this.distance, this.distanceFor(points, 0.84 * half));
+    if (points) this.distance = Math.min(this.distance, this.distanceFor(points, 0.9 * half));
   }
 
-  // the distance from which all points are seen at most at this slope from the middle of the free area
+  // the distance from which all points are seen, at most at this slope from the middle of the free area and below the title
   distanceFor(points, half) {
     const { right, upward, back } = this.axes();
-    const [x, y] = this.freeSize().map((pixels) => Math.max((half * pixels) / this.size[1], 0.05));
+    const [w, h] = this.freeSize();
+    const slope = (pixels) => Math.max((half * pixels) / this.size[1], 0.05);
+    const [x, below, above] = [slope(w), slope(h), slope(h - 2 * TITLE)];
     return points.reduce((most, point) => {
       const d = sub(point, this.target);
-      return Math.max(most, dot(d, back) + Math.max(Math.abs(dot(d, right)) / x, Math.abs(dot(d, upward)) / y));
+      const [across, up] = [dot(d, right), dot(d, upward)];
+      return Math.max(most, dot(d, back) + Math.max(Math.abs(across) / x, up > 0 ? up / above : -up / below));
     }, 0);
   }
 

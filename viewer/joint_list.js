@@ -12,11 +12,24 @@ const degrees = (angle) => `${((angle * 180) / Math.PI).toFixed(1).replace('-', 
 
 // what the plot can show of a joint
 const COURSES = {
-  force: { label: '|force|', unit: () => 'N', value: ({ force }) => length(force) },
-  torque: { label: '|torque|', unit: () => 'N·m', value: ({ torque }) => length(torque) },
-  coordinate: { label: 'coordinate', unit: coordinateUnit, value: ({ coordinate }) => coordinate },
-  rate: { label: 'rate', unit: (joint) => `${coordinateUnit(joint)}/s`, value: ({ rate }) => rate },
+  force: { label: () => '|F|', unit: () => 'N', value: ({ force }) => length(force) },
+  torque: { label: () => '|τ|', unit: () => 'N·m', value: ({ torque }) => length(torque) },
+  coordinate: { label: coordinateName, unit: coordinateUnit, value: ({ coordinate }) => coordinate },
+  rate: { label: () => 'Rate', unit: (joint) => `${coordinateUnit(joint)}/s`, value: ({ rate }) => rate },
 };
+
+function coordinateName(joint) {
+  if (coordinateUnit(joint) === 'rad') return 'Angle';
+  return HAS_LENGTH.has(joint.kind) ? 'Length' : 'Displacement';
+}
+
+// what a joint did in the step before a frame, without torques that are only rounding
+function stateOf(header, frame, index) {
+  const state = jointOf(frame, index);
+  const [body] = header.joints[index].bodies.filter((other) => other !== null);
+  const size = header.shapes[header.bodies[body].shape].radius;
+  return length(state.torque) > 1e-9 * size * length(state.force) ? state : { ...state, torque: [0, 0, 0] };
+}
 
 class JointTable extends Table {
   constructor(header, select) {
@@ -30,7 +43,7 @@ class JointTable extends Table {
 
   texts(index, snapshot) {
     const joint = this.header.joints[index];
-    const { force, torque } = jointOf(snapshot.frame, index);
+    const { force, torque } = stateOf(this.header, snapshot.frame, index);
     const isOff = hasLetGo(joint, snapshot.time);
     return [joint.kind, isOff ? '–' : number(length(force)), isOff ? '–' : number(length(torque))];
   }
@@ -46,7 +59,7 @@ class JointPlot extends TimePlot {
   }
 
   value(frame) {
-    return COURSES[this.course].value(jointOf(frame, this.joint));
+    return COURSES[this.course].value(stateOf(this.header, frame, this.joint));
   }
 
   get unit() {
@@ -132,13 +145,12 @@ export class JointList {
     this.name.title = joint.name;
     this.between.textContent = `${joint.kind}, ${names.join(' – ')}`;
     const unit = coordinateUnit(joint);
-    const coordinate = unit === 'rad' ? 'Angle' : HAS_LENGTH.has(joint.kind) ? 'Length' : 'Displacement';
-    const rows = [['|force|', 'N'], ['force', 'N'], ['|torque|', 'N·m'], ['torque', 'N·m'], ...(unit ? [[coordinate, unit], ['Rate', `${unit}/s`]] : [])];
+    const rows = [['|F|', 'N'], ['F', 'N'], ['|τ|', 'N·m'], ['τ', 'N·m'], ...(unit ? [[coordinateName(joint), unit], ['Rate', `${unit}/s`]] : [])];
     this.cells = rows.map(() => element('dd', {}));
     this.values.replaceChildren(...rows.flatMap(([row, of], i) => [element('dt', {}, row, element('small', {}, of)), this.cells[i]]));
     const courses = Object.keys(COURSES).filter((key) => unit || key === 'force' || key === 'torque');
     if (!courses.includes(this.plot.course)) this.plot.course = 'force';
-    this.choice.replaceChildren(...courses.map((key) => new Option(COURSES[key].label, key, false, key === this.plot.course)));
+    this.choice.replaceChildren(...courses.map((key) => new Option(`${COURSES[key].label(joint)} (${COURSES[key].unit(joint)})`, key, false, key === this.plot.course)));
     this.plot.joint = index;
     this.detail.scrollIntoView({ block: 'nearest' });
   }
@@ -147,7 +159,7 @@ export class JointList {
   tick(snapshot) {
     this.table.update(snapshot);
     if (this.selected === null || !snapshot.frame) return;
-    const { force, torque, coordinate, rate } = jointOf(snapshot.frame, this.selected);
+    const { force, torque, coordinate, rate } = stateOf(this.header, snapshot.frame, this.selected);
     const isAngle = coordinateUnit(this.header.joints[this.selected]) === 'rad';
     const texts = [number(length(force), 4), vector(force), number(length(torque), 4), vector(torque)];
     texts.push(isAngle ? `${number(coordinate, 4)}  (${degrees(coordinate)})` : number(coordinate, 4), number(rate, 4));

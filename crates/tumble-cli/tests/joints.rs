@@ -142,8 +142,8 @@ fn invalid_joints_and_loads_are_refused_with_their_place() {
 #[test]
 fn redundant_constraints_are_said() {
     let dir = TestDir::new();
-    let outcome = dir.tumble(&["run", "four_bar", "--duration", "0.01", "--out", "o"]);
+    let outcome = dir.tumble(&["run", "four-bar", "--duration", "0.01", "--out", "o"]);
     assert_contains(&outcome.expect_status(0).stdout, &["3 constraints follow from the others"]);
-    let outcome = dir.tumble(&["info", "four_bar"]);
+    let outcome = dir.tumble(&["info", "four-bar"]);
     assert_contains(&outcome.expect_status(0).stdout, &["4 hinge; 3 of their constraints follow"]);
 }

@@ -29,6 +29,15 @@ const GOLDEN: &[(&str, &str)] = &[
     ("drum", "8cb11037f0b96ae0a57b714d24623953"),
     ("heap", "47a5a78cb618b98f43822bc3de58b8f4"),
     ("conveyor", "2aff2732915d97a6eafe3639a7280c6c"),
+    ("pendulum", "3aeed94d248dbe6deaa4f380b3da41b1"),
+    ("double-pendulum", "59702760d50890e025646d267a7b2c21"),
+    ("gyroscope", "dc65391027c4c61329f9facf141a5909"),
+    ("kapitza", "a60ed8d1872789127ae25f1d43d977e0"),
+    ("slider-crank", "36e3afc43911dbf9a00d2c78cdc47b89"),
+    ("four-bar", "a15d4b346155d07ed4b786574f83d18f"),
+    ("cradle-strings", "1503343bb6b8f1143f9dfc05df298d79"),
+    ("beads", "d1a18c45b262497e5222aeb69be20a27"),
+    ("trebuchet", "648b66f59eeba066b3f4c0cc0402b6f1"),
 ];
 
 #[test]
