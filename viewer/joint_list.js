@@ -143,7 +143,9 @@ export class JointList {
     const names = joint.bodies.map((body) => (body === null ? 'world' : this.header.bodies[body].name));
     this.name.textContent = joint.name;
     this.name.title = joint.name;
-    this.between.textContent = `${joint.kind}, ${names.join(' – ')}`;
+    const until = joint.until === null ? '' : `, until ${quantity(joint.until, 's')}`;
+    this.between.textContent = `${joint.kind}, ${names.join(' – ')}${until}`;
+    this.between.title = this.between.textContent;
     const unit = coordinateUnit(joint);
     const rows = [['|F|', 'N'], ['F', 'N'], ['|τ|', 'N·m'], ['τ', 'N·m'], ...(unit ? [[coordinateName(joint), unit], ['Rate', `${unit}/s`]] : [])];
     this.cells = rows.map(() => element('dd', {}));

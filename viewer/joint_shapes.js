@@ -175,16 +175,24 @@ export class JointShapes {
 
   // a rod, rope or spring between two points
   line(joint, points, state) {
-    const { size } = this;
     const [a, b] = points;
-    const rope = Math.max(0.16 * size, ROPE * this.extent);
     if (joint.kind === 'distance') {
-      const radius = Math.max(0.35 * size, Math.min(ROD * this.extent, 0.08 * length(sub(a, b))));
+      const radius = Math.max(0.35 * this.size, Math.min(ROD * this.extent, 0.08 * length(sub(a, b))));
       this.rod(a, b, radius);
       points.forEach((point) => this.dot(point, 1.7 * radius));
     } else if (joint.kind === 'spring') {
       this.spring(a, b);
-    } else if (!isSlack(joint, points, state)) {
+    } else {
+      this.rope(joint, points, state);
+    }
+  }
+
+  rope(joint, points, state) {
+    const [a, b] = points;
+    const rope = Math.max(0.16 * this.size, ROPE * this.extent);
+    // the points where a rope hangs in the world
+    points.forEach((point, side) => joint.bodies[side] === null && this.dot(point, 2.4 * rope));
+    if (!isSlack(joint, points, state)) {
       this.rod(a, b, rope);
     } else {
       const at = (part) => add(a, scale(sub(b, a), part));
