@@ -66,8 +66,8 @@ impl BodyContacts {
 
     /// Lets the joints act on the velocities in the middle of the kick that the contact forces predict.
     pub fn predict_joined(&mut self, model: &Model, state: &State, joints: &mut JointWork) {
-        let JointWork { kick, start_coordinates, .. } = joints;
-        kick.begin(model, state, start_coordinates, model.dt);
+        let JointWork { kick, start_coordinates, start_rates, .. } = joints;
+        kick.begin(model, state, [start_coordinates, start_rates], model.dt);
         kick.set_mean_twists(model, |body| {
             (self.poses[body].velocity, self.poses[body].angular_velocity)
         });

@@ -53,6 +53,12 @@ pub(crate) fn fly(model: &Model, state: &mut State, work: &mut JointWork, h: f64
     let count = model.joints.list.len();
     work.start_system.set_states(model, &work.start);
     set_twists(model, &work.start, &mut work.start_twists);
+    let JointWork { start_rates, start_system, start_twists, .. } = &mut *work;
+    start_rates.clear();
+    start_rates.extend(model.joints.list.iter().enumerate().map(|(index, joint)| {
+        let rates = start_system.rates(model, index, start_twists);
+        joint.coordinate_row().map_or(0.0, |row| rates[row])
+    }));
     work.impulses.clear();
     let joints = state.joints.iter_mut().zip(&model.joints.list);
     for (joint_state, _) in joints.filter(|(_, joint)| !joint.acts_at(state.time)) {

@@ -24,8 +24,9 @@ struct Coordinate {
     law: CoordinateLaw,
     /// The index of its present piece.
     piece: usize,
-    /// u⁻.
+    /// u⁻, and u⁻ − u₀: what the flight before the kick changed.
     before: f64,
+    change: f64,
 }
 
 /// The joints in one kick.
@@ -46,9 +47,9 @@ pub(crate) struct JointKick {
 }
 
 impl JointKick {
-    /// Begins a kick over the time `h` (s) of bodies in these states, in a step that began at the coordinates `start`. No impulse acts so
-    /// far.
-    pub fn begin(&mut self, model: &Model, state: &State, start: &[f64], h: f64) {
+    /// Begins a kick over the time `h` (s) of bodies in these states, in a step that began at the coordinates `start` with the rates `rates`;
+    /// without them at the present rates. No impulse acts so far.
+    pub fn begin(&mut self, model: &Model, state: &State, [start, rates]: [&[f64]; 2], h: f64) {
         self.system.set_states(model, &state.bodies);
         set_twists(model, &state.bodies, &mut self.before);
         self.twists.clone_from(&self.before);
@@ -70,9 +71,10 @@ impl JointKick {
                 continue;
             }
             let before = self.system.rates(model, index, &self.before)[row];
-            let law = CoordinateLaw::new(joint, start[index], h, at_limit);
-            let piece = law.piece_at(before);
-            self.coordinates.push(Coordinate { joint: index, row, law, piece, before });
+            let rate = rates.get(index).copied().unwrap_or(before);
+            let law = CoordinateLaw::new(joint, (start[index], rate), h, at_limit);
+            let (piece, change) = (law.piece_at(before), before - rate);
+            self.coordinates.push(Coordinate { joint: index, row, law, piece, before, change });
         }
         self.factor(model);
     }
@@ -121,7 +123,7 @@ impl JointKick {
             self.softness[*joint][*row] = match law.piece(*piece) {
                 Piece::Vertical { .. } => 0.0,
                 Piece::Sloped { a: 0.0, .. } => f64::NAN,
-                Piece::Sloped { a, .. } => 2.0 / a,
+                Piece::Sloped { a, .. } => 1.0 / a,
             };
         }
         self.system.factor(model, &self.softness);
@@ -133,14 +135,14 @@ impl JointKick {
         for (joint, residual) in self.residuals.iter_mut().enumerate() {
             *residual = self.system.rates(model, joint, &self.twists).map(|rate| -rate);
         }
-        for Coordinate { joint, row, law, piece, before } in &self.coordinates {
+        for Coordinate { joint, row, law, piece, change, .. } in &self.coordinates {
             let residual = &mut self.residuals[*joint][*row];
             match law.piece(*piece) {
-                Piece::Vertical { velocity, .. } => *residual += 2.0 * velocity - before,
+                Piece::Vertical { velocity, .. } => *residual += velocity - change,
                 Piece::Sloped { a: 0.0, .. } => {}
                 Piece::Sloped { a, b, .. } => {
                     let impulse = self.impulses[*joint][*row];
-                    *residual += 2.0 * (b - impulse) / a - before;
+                    *residual += (b - impulse) / a - change;
                 }
             }
         }
@@ -172,10 +174,10 @@ impl JointKick {
         self.system.add_to_twists(model, &self.residuals, &mut self.twists);
     }
 
-    /// The mean rate of a coordinate in the kick.
-    fn mean_rate(&self, model: &Model, coordinate: &Coordinate) -> f64 {
-        let rates = self.system.rates(model, coordinate.joint, &self.twists);
-        0.5 * (coordinate.before + rates[coordinate.row])
+    /// The rate of a coordinate at the end of the step, and its mean in the kick.
+    fn end_and_mean(&self, model: &Model, coordinate: &Coordinate) -> [f64; 2] {
+        let after = self.system.rates(model, coordinate.joint, &self.twists)[coordinate.row];
+        [after + coordinate.change, 0.5 * (coordinate.before + after)]
     }
 
     /// Lets coordinates that have left their pieces go on to the next; returns whether there are any.
@@ -190,8 +192,8 @@ impl JointKick {
             let (is_lower, is_higher) = match coordinate.law.piece(coordinate.piece) {
                 Piece::Vertical { impulses: [low, high], .. } => (impulse > high, impulse < low),
                 Piece::Sloped { between: [low, high], .. } => {
-                    let rate = self.mean_rate(model, coordinate);
-                    (rate < low, rate > high)
+                    let [end, _] = self.end_and_mean(model, coordinate);
+                    (end < low, end > high)
                 }
             };
             let piece = &mut self.coordinates[index].piece;
@@ -228,11 +230,11 @@ impl JointKick {
         }
         let mut totals = RunTotals::default();
         for coordinate in &self.coordinates {
-            let rate = self.mean_rate(model, coordinate);
+            let rates = self.end_and_mean(model, coordinate);
             let impulse = self.impulses[coordinate.joint][coordinate.row];
-            let parts = coordinate.law.parts(coordinate.piece, rate, impulse);
-            totals.motor += parts.motor * rate;
-            totals.joint_friction -= parts.losses * rate;
+            let parts = coordinate.law.parts(coordinate.piece, rates, impulse);
+            totals.motor += parts.motor * rates[1];
+            totals.joint_friction -= parts.losses * rates[1];
         }
         totals
     }

@@ -1,9 +1,10 @@
 //! The law of a coordinate: the impulse of its spring, damper, motor, friction and limit in a kick.
 //!
-//! All of them resist, so the impulse p falls as the mean velocity ū = (u⁻ + u⁺)/2 of the kick rises. It is linear in parts: between
-//! the velocities where friction, a motor or a limit jumps it is sloped, p = b − a ū, and at these ū is given and p is within the jump.
-//! With impulses at the mean velocity, what they take is exactly −p ū, a body that friction holds does not creep, and an undamped
-//! spring conserves energy at any step.
+//! All of them resist, so the impulse p falls as the rate u⁺ after the kick rises. Let u₀ be the rate at the beginning of the step and
+//! e = u⁺ + (u⁻ − u₀) that at its end, if both flights change it alike. The law is linear in parts: between the rates at which friction,
+//! a motor or a limit jumps it is sloped, p = b − a e, and at these e is given and p is within the jump: what friction holds is at rest at
+//! the end of the step, and does not creep, since the flights cancel. Springs and dampers act at the mean rate ū = (u⁻ + u⁺)/2 = (u₀ + e)/2: an
+//! undamped spring conserves energy at any step. What an impulse takes is exactly −p ū.
 
 use super::definition::Motor;
 use super::model::JointModel;
@@ -35,7 +36,7 @@ impl Jump {
     }
 }
 
-/// b − a ū, within ± `most`.
+/// b − a e, within ± `most`.
 #[derive(Clone, Copy, Debug)]
 struct Ramp {
     a: f64,
@@ -83,9 +84,9 @@ impl Side {
 /// A piece of the law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Piece {
-    /// p = b − a ū, for ū within `between`.
+    /// p = b − a e, for e within `between`.
     Sloped { a: f64, b: f64, between: [f64; 2] },
-    /// ū = `velocity`, for p within `impulses`.
+    /// e = `velocity`, for p within `impulses`.
     Vertical { velocity: f64, impulses: [f64; 2] },
 }
 
@@ -111,13 +112,12 @@ pub(crate) struct CoordinateLaw {
 }
 
 impl CoordinateLaw {
-    /// The law for a kick over the time `h` (s), in a step that begins at the coordinate `start`.
-    pub fn new(joint: &JointModel, start: f64, h: f64, at_limit: AtLimit) -> Self {
+    /// The law for a kick over the time `h` (s), in a step that begins at the coordinate `start` with the rate `rate`.
+    pub fn new(joint: &JointModel, (start, rate): (f64, f64), h: f64, at_limit: AtLimit) -> Self {
         // the mean of the force at both ends of the step, which moves the coordinate by h ū
-        let spring = |k: f64, c: f64, rest: f64, most: f64| Ramp {
-            a: 0.5 * h * h * k + h * c,
-            b: -h * k * (start - rest),
-            most: h * most,
+        let spring = |k: f64, c: f64, rest: f64, most: f64| {
+            let a = 0.5 * (0.5 * h * h * k + h * c);
+            Ramp { a, b: -h * k * (start - rest) - a * rate, most: h * most }
         };
         let (mut servo, mut drive) = (Ramp::NONE, Jump::NONE);
         match joint.motor {
@@ -196,13 +196,13 @@ impl CoordinateLaw {
         [self.spring.a + a, self.spring.b + b + jumps]
     }
 
-    /// The parts of an impulse at a mean velocity on a piece.
-    pub fn parts(&self, index: usize, velocity: f64, impulse: f64) -> Parts {
+    /// The parts of an impulse on a piece, at the rate e `end` and the mean rate ū `mean`.
+    pub fn parts(&self, index: usize, [end, mean]: [f64; 2], impulse: f64) -> Parts {
         let Piece::Vertical { velocity, .. } = self.piece(index) else {
-            let side = Side::Above(velocity);
+            let side = Side::Above(end);
             let [a, b] = self.servo.at(side);
-            let motor = self.drive.at(side) + (b - a * velocity);
-            return Parts { motor, losses: self.friction.at(side) - self.damper * velocity };
+            let motor = self.drive.at(side) + (b - a * end);
+            return Parts { motor, losses: self.friction.at(side) - self.damper * mean };
         };
         // what the others leave is that of the motor, then that of friction; a limit does no work
         let side = Side::Above(velocity);
@@ -219,6 +219,6 @@ impl CoordinateLaw {
         let others = if self.drive.velocity == velocity { self.friction.at(side) } else { 0.0 };
         let drive = share(&self.drive, rest - others);
         let friction = share(&self.friction, rest - drive);
-        Parts { motor: drive + servo, losses: friction - self.damper * velocity }
+        Parts { motor: drive + servo, losses: friction - self.damper * mean }
     }
 }

@@ -21,6 +21,8 @@ pub(crate) struct JointWork {
     pub start: Vec<BodyState>,
     /// The coordinates of all joints there.
     pub start_coordinates: Vec<f64>,
+    /// The rates of all coordinates at the beginning of the latest flight; 0 without a coordinate.
+    pub start_rates: Vec<f64>,
     /// Rows at the beginning of a flight, and at its middle or end.
     pub start_system: System,
     pub system: System,
@@ -71,7 +73,7 @@ impl JointWork {
         self.start_coordinates.clear();
         self.start_coordinates.extend(state.joints.iter().map(|joint| joint.coordinate));
         // forces have no time to act, but limits hold
-        self.kick.begin(model, state, &self.start_coordinates, 0.0);
+        self.kick.begin(model, state, [&self.start_coordinates, &[]], 0.0);
         self.kick.push(model, body, impulse);
         self.kick.solve(model);
         let (v, omega) = self.kick.mean_twist(body);

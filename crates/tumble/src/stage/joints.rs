@@ -31,7 +31,8 @@ pub(crate) fn kick_joined(model: &Model, state: &mut State, scratch: &mut Scratc
         return;
     }
     let Scratch { joints, forces, .. } = scratch;
-    joints.kick.begin(model, state, &joints.start_coordinates, h);
+    let start = [joints.start_coordinates.as_slice(), &joints.start_rates];
+    joints.kick.begin(model, state, start, h);
     for &body in &model.joints.bodies {
         let forces = &mut forces[body as usize];
         forces.joint = Wrench::default();

@@ -83,7 +83,8 @@ impl Solver {
         let outcome = if model.joints.is_empty() {
             iterate(&self.rows, &self.velocities, model.solver, None)
         } else {
-            joints.kick.begin(model, state, &joints.start_coordinates, h);
+            let start = [joints.start_coordinates.as_slice(), &joints.start_rates];
+            joints.kick.begin(model, state, start, h);
             let joints = Mutex::new(IteratedJoints { model, kick: &mut joints.kick });
             iterate(&self.rows, &self.velocities, model.solver, Some(&joints))
         };
