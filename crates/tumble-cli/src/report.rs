@@ -14,7 +14,9 @@ pub fn report(finished: &FinishedRun, folder: &RunFolder) -> String {
     let dissipated = e.drag + e.dashpot + e.slip + e.joint_friction;
     // gravitational energy has an arbitrary zero, so that the total is no scale for the residual
     let scale = e.kinetic + e.elastic + dissipated;
-    let relative = s.energy_residual / scale;
+    // where nothing moves there is only rounding
+    let is_rounding = s.energy_residual.abs() <= 1e-12 * (scale + e.gravitational.abs());
+    let relative = if is_rounding { 0.0 } else { s.energy_residual / scale };
     let share = if relative.is_finite() {
         format!(" ({relative:+.2e} of kinetic + elastic + dissipated energy)")
     } else {

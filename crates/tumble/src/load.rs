@@ -202,20 +202,19 @@ impl Loads {
         self.central_gravity.is_none() && self.list.is_empty() && self.functions.is_empty()
     }
 
-    /// The wrench of all loads on a body at a time (s).
-    pub(crate) fn wrench(&self, index: usize, view: &BodyView, time: f64) -> Wrench {
-        let mut wrench = Wrench::default();
+    /// The wrench of all loads on a body at a time (s), with central gravity, and that of central gravity alone.
+    pub(crate) fn wrenches(&self, index: usize, view: &BodyView, time: f64) -> [Wrench; 2] {
         let kinematics = Kinematics::new(view.model(), view.state());
-        if let Some(gravity) = &self.central_gravity {
-            wrench += gravity.wrench(&kinematics);
-        }
+        let gravity = self.central_gravity.map(|gravity| gravity.wrench(&kinematics));
+        let gravity = gravity.unwrap_or_default();
+        let mut wrench = gravity;
         for (_, load) in of_body(&self.list, index) {
             wrench += load.wrench(time, kinematics.rotation);
         }
         for (_, function) in of_body(&self.functions, index) {
             wrench += (function.function)(time, view);
         }
-        wrench
+        [wrench, gravity]
     }
 
     /// The potential energy of all bodies (J).

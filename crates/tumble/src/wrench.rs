@@ -45,8 +45,10 @@ pub struct BodyForces {
     pub dashpot: Wrench,
     /// Tangential springs of contacts with walls.
     pub friction: Wrench,
-    /// Loads.
+    /// Loads and central gravity.
     pub load: Wrench,
+    /// The part of `load` that is central gravity: its work is the loss of gravitational energy.
+    pub central_gravity: Wrench,
     /// Joints in the kick.
     pub joint: Wrench,
     /// Energy that slipping and released friction springs lose in this evaluation (J).
@@ -74,6 +76,11 @@ impl BodyForces {
     /// The wrench of contact and joints.
     pub(crate) fn of_others(&self) -> Wrench {
         if self.has_others() { self.contact() + self.joint } else { self.contact() }
+    }
+
+    /// The wrench of loads without central gravity.
+    pub(crate) fn given_load(&self) -> Wrench {
+        self.load - self.central_gravity
     }
 
     /// Whether loads or joints act.

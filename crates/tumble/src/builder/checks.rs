@@ -41,6 +41,8 @@ impl WorldBuilder {
             let refines = self.integrator == Integrator::Splitting;
             let allowed = "left out with the integrators \"euler\" and \"implicit\": only \"splitting\" refines its steps";
             check("energy_tolerance", refines, &tolerance, allowed);
+            let allowed = "left out in scenes with joints or loads: it refines the steps of each body separately, so use a smaller `dt` instead";
+            check("energy_tolerance", !self.has_joints_or_loads(), &tolerance, allowed);
             let alone = self.bodies.iter().all(|body| body.surface == Surface::None);
             let allowed = "left out where bodies collide with each other: it refines the steps of each body separately, so use a smaller `dt` instead";
             check("energy_tolerance", alone, &tolerance, allowed);

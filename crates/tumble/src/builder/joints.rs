@@ -22,6 +22,10 @@ impl WorldBuilder {
         state: &mut State,
         errors: &mut Vec<BuildError>,
     ) {
+        // a body that is refused has no index
+        if !errors.is_empty() {
+            return;
+        }
         let mut list = Vec::with_capacity(self.joints.len());
         for (index, joint) in self.joints.iter().enumerate() {
             let name = joint.name.clone().unwrap_or_else(|| format!("joint {index}"));
@@ -244,6 +248,9 @@ impl WorldBuilder {
                 Err(("body", format!("\"{wanted}\""), "a body that moves by forces"))
             }
         };
+        if !errors.is_empty() {
+            return;
+        }
         let mut loads = model.loads.clone();
         let mut refuse = |load: usize, (quantity, value, allowed): Fault| {
             errors.push(BuildError::Load { load, quantity, value, allowed });

@@ -274,3 +274,23 @@ fn four_bars_with_redundant_hinges_close_their_loop() {
     assert!(worst < 1e-12, "{worst:e}");
     assert!((energy.total() - start).abs() < 1e-3 * energy.kinetic, "{energy:?}");
 }
+
+#[test]
+fn the_ledger_of_an_orbit_closes_and_energy_tolerance_is_refused() {
+    let orbit = || {
+        let gravity = crate::CentralGravity { gm: 1.0, at: DVec3::ZERO };
+        let planet = point("planet", DVec3::X * 0.5).velocity(DVec3::Y * 3f64.sqrt());
+        World::builder().dt(1e-3).gravity(DVec3::ZERO).central_gravity(gravity).body(planet)
+    };
+    let mut world = orbit().build().unwrap();
+    let mut worst = 0.0f64;
+    for _ in 0..7000 {
+        world.step().unwrap();
+        let energy = world.energy();
+        worst = worst.max((energy.total() + 0.5).abs());
+        assert!(energy.work == 0.0);
+    }
+    assert!(worst < 1e-5, "{worst:e}");
+    let refused = orbit().energy_tolerance(1e-6).build().map(drop).unwrap_err().to_string();
+    assert!(refused.contains("joints or loads"), "{refused}");
+}

@@ -43,7 +43,7 @@ pub(super) fn kick_body(
     RunTotals {
         dashpot: h * (mean.dissipated_power(&forces.dashpot) + forces.surface_dashpot_power),
         slip: forces.slip_loss,
-        work: h * (forces.surface_power - mean.dissipated_power(&forces.load)),
+        work: h * (forces.surface_power - mean.dissipated_power(&forces.given_load())),
         max_depth: forces.max_depth,
         evaluations: u64::from(forces.max_depth > 0.0),
         ..RunTotals::default()

@@ -10,11 +10,11 @@ pub fn load(batch: &mut Batch, h: f64) {
     }
     let bodies = model.bodies[*first..].iter().zip(&**bodies).zip(&model.names[*first..]);
     for ((index, ((body, state), name)), forces) in (*first..).zip(bodies).zip(&mut **forces) {
-        forces.load = if body.is_free() {
+        [forces.load, forces.central_gravity] = if body.is_free() {
             let view = BodyView::new(name, body, state);
-            model.loads.wrench(index, &view, *time + 0.5 * h)
+            model.loads.wrenches(index, &view, *time + 0.5 * h)
         } else {
-            Wrench::default()
+            [Wrench::default(); 2]
         };
     }
 }

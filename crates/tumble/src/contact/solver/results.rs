@@ -162,7 +162,8 @@ impl Solver {
     ) {
         let bodies = model.bodies.iter().zip(&mut state.bodies).zip(forces);
         for (((body, state), forces), &impulse) in bodies.zip(&self.impulses) {
-            *forces = BodyForces { load: forces.load, ..BodyForces::default() };
+            let BodyForces { load, central_gravity, .. } = *forces;
+            *forces = BodyForces { load, central_gravity, ..BodyForces::default() };
             if impulse == Wrench::default() {
                 continue;
             }
@@ -226,7 +227,7 @@ fn move_by_others(
         state.angular_momentum += torque * h;
         // the kick began half of its change before the middle
         let mean = Kinematics::new(body, state).at_mid_kick(&all, -h);
-        totals.work -= h * mean.dissipated_power(&forces.load);
+        totals.work -= h * mean.dissipated_power(&forces.given_load());
     }
 }
 
