@@ -66,12 +66,17 @@ fn a_checkpoint_is_read_back_unchanged() {
     );
 }
 
-/// The bytes as version 3 or 4 has them, of a checkpoint without impulses.
+/// Bytes of what version 6 adds, without joints.
+const JOINTS: usize = 3 * 8;
+
+/// The bytes as version 3 or 4 has them, of a checkpoint without impulses and joints.
 fn as_version(version: u32, mut bytes: Vec<u8>) -> Vec<u8> {
     let before = bytes.len();
     let section = bytes.windows(4).position(|name| name == b"STAT").unwrap();
-    // from the end: checksum, three totals of version 5, six older ones, then the division of steps, the time since the
-    // kick and the number of impulses
+    // from the end: checksum, the number of joints and their totals of version 6, three totals of version 5, six older ones, then the
+    // division of steps, the time since the kick and the number of impulses
+    let joints = bytes.len() - 32 - JOINTS;
+    bytes.drain(joints..joints + JOINTS);
     let totals = bytes.len() - 32 - 9 * 8;
     bytes.drain(totals + 6 * 8..totals + 9 * 8);
     bytes.drain(totals - 2 * 8 - 4..totals);
@@ -168,8 +173,8 @@ fn contacts_between_bodies_and_totals_are_preserved() {
 #[test]
 fn invalid_contact_kinds_and_counts_are_rejected() {
     let bytes = with_pair_contacts().to_bytes();
-    // from the end: checksum, totals, the division of steps, the time since the kick, the impulses and their number, then the last spring
-    let impulses = bytes.len() - 32 - 9 * 8 - 4 - 8 - 2 * 32 - 8;
+    // from the end: checksum, joints, totals, the division of steps, the time since the kick, the impulses and their number, then the last spring
+    let impulses = bytes.len() - 32 - JOINTS - 9 * 8 - 4 - 8 - 2 * 32 - 8;
     assert_eq!(bytes[impulses], 2);
     let kind = impulses - 41 + 8;
     assert_eq!(bytes[kind], 3);
@@ -218,13 +223,13 @@ fn other_files_are_rejected_with_the_reason() {
     assert_error(&later, "damaged");
     assert_error(
         &with_checksum(later),
-        "format version 11, but this program reads versions 3 to 5",
+        "format version 12, but this program reads versions 3 to 6",
     );
     let mut earlier = checkpoint().to_bytes();
     earlier[MAGIC.len()..][..4].copy_from_slice(&2u32.to_le_bytes());
     assert_error(
         &with_checksum(earlier),
-        "format version 2, but this program reads versions 3 to 5",
+        "format version 2, but this program reads versions 3 to 6",
     );
     let folder = tempfile::tempdir().unwrap();
     assert!(matches!(read_checkpoint(folder.path()), Err(CheckpointError::NotAFile)));

@@ -17,6 +17,10 @@ pub fn integrators(scene: &Scene, world: &World) -> Vec<IntegratorChoice> {
     let possible = all.into_iter().filter(|&integrator| {
         scene.energy_tolerance.is_none() || integrator == Integrator::Splitting
     });
+    // nor has `euler` joints and loads
+    let needs_kicks =
+        !scene.joints.is_empty() || scene.has_loads() || scene.central_gravity.is_some();
+    let possible = possible.filter(|integrator| !needs_kicks || integrator.kicks());
     possible
         .map(|integrator| {
             let dt = limits.suggested_dt(integrator);

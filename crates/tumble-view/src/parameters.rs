@@ -34,7 +34,7 @@ pub fn parameters(scene: &Scene) -> Vec<Parameter> {
         list.material(&table, &wall.material);
     }
     for (index, body) in scene.bodies.iter().enumerate().take(MAX_TABLES) {
-        list.body(&format!("body.{index}"), body);
+        list.body(&format!("body.{index}"), body, !scene.joints.is_empty());
     }
     list.0
 }
@@ -105,16 +105,16 @@ impl ParameterList {
     }
 
     /// Adds the initial state, scale, mass and contact parameters of a body.
-    fn body(&mut self, table: &str, body: &BodyScene) {
+    fn body(&mut self, table: &str, body: &BodyScene, is_joined: bool) {
         let key = |name: &str| format!("{table}.{name}");
-        self.vector(
-            &key("initial_velocity"),
-            body.initial_velocity.unwrap_or_default(),
-            "m/s",
-            20.0,
-        );
-        let spin = body.initial_angular_velocity.unwrap_or_default();
-        self.vector(&key("initial_angular_velocity"), spin, "rad/s", 200.0);
+        // what is left out follows from the joints
+        let default = (!is_joined).then_some(DVec3::ZERO);
+        if let Some(velocity) = body.initial_velocity.or(default) {
+            self.vector(&key("initial_velocity"), velocity, "m/s", 20.0);
+        }
+        if let Some(spin) = body.initial_angular_velocity.or(default) {
+            self.vector(&key("initial_angular_velocity"), spin, "rad/s", 200.0);
+        }
         if let Some(position) = body.position {
             self.vector(&key("position"), position, "m", 2.0);
         }

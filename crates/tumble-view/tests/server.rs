@@ -184,7 +184,7 @@ fn a_page_receives_the_header_and_then_frames() {
     let header: Value = serde_json::from_str(&first).unwrap();
     assert_eq!((&header["type"], &header["bodies"][0]["name"]), (&"head".into(), &"ball".into()));
     let first = page.frame();
-    assert_eq!(first.bytes.len(), 88 + 88);
+    assert_eq!(first.bytes.len(), 104 + 88);
     let last = page.frame_where(|frame| frame.time > 0.1);
     assert!(last.step > first.step);
     assert!(server.close());

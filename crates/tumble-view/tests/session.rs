@@ -386,13 +386,13 @@ fn header_and_frame_have_the_documented_format() {
     assert_eq!(vertices.len(), (42 * 12usize).div_ceil(3) * 4);
 
     let record = frame::record(&session);
-    assert_eq!(record.len(), 88 + 88 * 3);
+    assert_eq!(record.len(), 104 + 88 * 3);
     let (energy, residual) = (session.world().energy(), residual(&session));
     assert_eq!((float(&record, 0), float(&record, 8)), (session.world().time(), 400.0));
-    assert_eq!((float(&record, 16), float(&record, 72)), (energy.kinetic, energy.total()));
-    assert_eq!(float(&record, 80), residual);
+    assert_eq!((float(&record, 16), float(&record, 88)), (energy.kinetic, energy.total()));
+    assert_eq!(float(&record, 96), residual);
     let body = |number: usize, at: usize| {
-        let start = 88 + 88 * number + 4 * at;
+        let start = 104 + 88 * number + 4 * at;
         f64::from(f32::from_le_bytes(record[start..start + 4].try_into().unwrap()))
     };
     for (number, view) in session.world().bodies().enumerate() {

@@ -147,7 +147,7 @@ proptest! {
             session.advance(&mut || { calls += 1; calls < 3 });
             let header: serde_json::Value = serde_json::from_str(&header::json(&session)).unwrap();
             prop_assert_eq!(header["bodies"].as_array().unwrap().len(), session.world().body_count());
-            let size = 88 + 88 * session.world().body_count();
+            let size = 104 + 88 * session.world().body_count();
             prop_assert_eq!(frame::record(&session).len(), size);
         }
         // a reset always recovers

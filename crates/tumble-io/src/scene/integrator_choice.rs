@@ -126,7 +126,11 @@ mod tests {
             let [splitting, implicit] = [Integrator::Splitting, Integrator::Implicit].map(dt);
             let is_longer = splitting <= implicit || limits.critical.is_none();
             assert!(is_longer && implicit <= 1.0 / 60.0, "{}", builtin.name);
+            let has_joints = !scene.joints.is_empty();
             for integrator in [Integrator::Splitting, Integrator::Implicit, Integrator::Euler] {
+                if has_joints && !integrator.kicks() {
+                    continue;
+                }
                 let mut with = load_with_integrator(&scene, integrator, dt(integrator)).unwrap();
                 assert_eq!(with.scene.integrator, integrator);
                 with.world.step().unwrap();

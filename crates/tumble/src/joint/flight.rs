@@ -144,7 +144,8 @@ impl Flight<'_> {
 
     /// Sets the residuals; returns the largest one, relative to the distances that it is computed from, and its joint.
     fn residuals(&mut self, state: &State) -> (f64, usize) {
-        let Self { model, work, limits, .. } = self;
+        let Self { model, work, limits, time, .. } = self;
+        let fall = model.gravity.length() * *time * *time;
         work.system.set_states(model, &state.bodies);
         work.residuals.resize(limits.len(), RowValues::default());
         let mut worst = (0.0, 0);
@@ -161,10 +162,15 @@ impl Flight<'_> {
                 let bound = joint.limits[usize::from(*limit == Limit::Upper)];
                 residuals[row] = joint.near(rows.rows[row].value, joint_state.coordinate) - bound;
             }
-            let places =
-                joint.bodies.iter().flatten().map(|body| &work.system.places[*body as usize]);
-            let size =
-                places.map(|place| place.position.length()).fold(rows.arm.length(), f64::max);
+            // the distances that values are computed from: a joint in the centre of a body at the origin has none but its size
+            let sizes = joint.bodies.iter().flatten().map(|&body| {
+                let start = &work.start[body as usize];
+                let position = work.system.places[body as usize].position;
+                let path = start.velocity.length() * *time + fall;
+                position.length().max(model.bodies[body as usize].extent).max(path)
+            });
+            let arms = joint.anchors.iter().map(|anchor| anchor.length());
+            let size = sizes.chain(arms).fold(0.0, f64::max);
             let size = if size > 0.0 { size } else { 1.0 };
             for (residual, row) in residuals.iter().zip(&rows.rows) {
                 let size = if row.linear == glam::DVec3::ZERO { 1.0 } else { size };

@@ -294,3 +294,18 @@ fn the_ledger_of_an_orbit_closes_and_energy_tolerance_is_refused() {
     let refused = orbit().energy_tolerance(1e-6).build().map(drop).unwrap_err().to_string();
     assert!(refused.contains("joints or loads"), "{refused}");
 }
+
+/// A hinge in the centre of a body at the origin, with another body on it.
+#[test]
+fn a_joint_at_the_origin_converges() {
+    let arm = solid("arm", DVec3::new(0.01, -0.5, 0.0), DVec3::new(0.02, 1.0, 0.02));
+    let mut world = world(1e-3)
+        .body(solid("shaft", DVec3::ZERO, DVec3::new(0.1, 1.0, 0.1)))
+        .body(arm)
+        .joint(Joint::hinge(["shaft", "world"], DVec3::ZERO, DVec3::Y))
+        .joint(Joint::hinge(["arm", "shaft"], DVec3::ZERO, DVec3::Z))
+        .build()
+        .unwrap();
+    world.steps(2000).unwrap();
+    assert!(world.constraint_error() < 1e-14);
+}
