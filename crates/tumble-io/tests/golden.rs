@@ -33,11 +33,11 @@ const GOLDEN: &[(&str, &str)] = &[
     ("double-pendulum", "59702760d50890e025646d267a7b2c21"),
     ("gyroscope", "dc65391027c4c61329f9facf141a5909"),
     ("kapitza", "a60ed8d1872789127ae25f1d43d977e0"),
-    ("slider-crank", "36e3afc43911dbf9a00d2c78cdc47b89"),
-    ("four-bar", "a15d4b346155d07ed4b786574f83d18f"),
-    ("cradle-strings", "1503343bb6b8f1143f9dfc05df298d79"),
+    ("slider-crank", "c7417d0cda50d1c4afb1cde95438c3d6"),
+    ("four-bar", "03fc759954853be771c9e624b85e60c8"),
+    ("cradle-strings", "86f731473a9cf0ff3f794e9549d7792d"),
     ("beads", "d1a18c45b262497e5222aeb69be20a27"),
-    ("trebuchet", "648b66f59eeba066b3f4c0cc0402b6f1"),
+    ("trebuchet", "f5ae6c1c4a4af0d83fc315e5ec3c81eb"),
 ];
 
 #[test]

@@ -16,8 +16,8 @@ use super::work::{JointFailure, JointWork, set_twists};
 use crate::stage::drift_body;
 use crate::{BodyState, Model, State};
 
-/// Flights of Newton's method.
-const MAX_FLIGHTS: usize = 30;
+/// Flights of Newton's method. Two or three are enough unless a body turns by half a radian or more in a flight.
+const MAX_FLIGHTS: usize = 100;
 /// Constraints hold to this, relative to the distances that they are computed from.
 const TOLERANCE: f64 = 2e-15;
 /// What is accepted where rounding errors allow no less.

@@ -49,7 +49,7 @@ pub(super) fn iterate(
     let visit_joints = || joints.map_or(0.0, |joints| lock(joints).visit(bodies));
     if blocks.is_empty() {
         visit_joints();
-        return Outcome { iterations: 0, has_converged: true };
+        return Outcome { iterations: 1, has_converged: true };
     }
     let has_converged = |joint_change: f64| {
         let mut all = Change { change: joint_change, total: 0.0 };
