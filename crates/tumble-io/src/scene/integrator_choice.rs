@@ -18,6 +18,8 @@ const UNDAMPED: f64 = 0.2;
 const IMPLICIT_STEPS: f64 = 5.0;
 /// The orientation of a body is of first order in `euler`, however slow its contacts are.
 const LONGEST_EULER: f64 = 1e-3;
+/// The longest step (s) with joints, whose motion is of second order in it.
+const LONGEST_WITH_JOINTS: f64 = 1e-3;
 /// Part of a swing of an oscillating body that a step may take, somewhat below the limit of the builder.
 const PART_OF_SWING: f64 = 0.09;
 
@@ -28,7 +30,7 @@ pub struct StepLimits {
     pub critical: Option<CriticalStep>,
     /// The longest step (s) with which `splitting` rebounds with the given restitution; `None` without dashpots.
     pub dt_for_restitution: Option<f64>,
-    /// No step is longer than this (s): the interval of the output, and a part of the fastest prescribed oscillation.
+    /// No step is longer than this (s): the interval of the output, a part of the fastest prescribed oscillation, and 1 ms with joints.
     pub longest: f64,
 }
 
@@ -40,8 +42,10 @@ impl StepLimits {
             MotionScene::Prescribed(given) => given.oscillation,
             _ => None,
         });
+        let of_joints = (!scene.joints.is_empty()).then_some(LONGEST_WITH_JOINTS);
         let longest = oscillations
             .map(|oscillation| PART_OF_SWING / oscillation.frequency.abs())
+            .chain(of_joints)
             .fold(scene.output.interval, f64::min);
         Self {
             critical: critical_dt(&model),

@@ -50,6 +50,7 @@ impl WorldBuilder {
         }
         model.joints = Joints::new(list, &model.bodies);
         state.joints = vec![JointState::default(); model.joints.list.len()];
+        model.joints.has_redundant = crate::joint::redundant_constraints(model, state) > 0;
         if errors.is_empty() {
             self.set_joined_velocities(model, state, errors);
         }

@@ -201,7 +201,12 @@ impl Flight<'_> {
     /// The matrix of Newton's method. Its error is of second order in the rotation during the flight.
     fn factor_in_the_middle(&mut self, state: &State) {
         self.set_softness(state.time);
-        let JointWork { start, system, softness, .. } = &mut *self.work;
+        let JointWork { start, system, start_system, softness, .. } = &mut *self.work;
+        if self.model.joints.has_redundant {
+            // half way the constraints do not hold, so that rows which depend on others at the beginning seem to be almost independent
+            start_system.factor(self.model, softness);
+            start_system.leave_out_dependent(self.model, softness);
+        }
         system.set_places(self.model, |body| middle(&start[body], &state.bodies[body]));
         system.factor(self.model, softness);
     }

@@ -46,6 +46,8 @@ pub struct Joints {
     pub list: Vec<JointModel>,
     /// For each body whether a joint acts on it; empty without joints.
     pub is_joined: Vec<bool>,
+    /// Whether constraints follow from others at the start of the run.
+    pub(crate) has_redundant: bool,
     /// The bodies that joints act on, by index.
     pub(crate) bodies: Vec<u32>,
     /// Pairs of bodies that do not touch each other, the lower index first, sorted.
@@ -94,7 +96,7 @@ impl Joints {
         let is_free = |body: &u32| models[*body as usize].is_free();
         let coupled = |joint: &JointModel| joint.bodies.map(|body| body.filter(is_free));
         let elimination = Elimination::new(&list.iter().map(coupled).collect::<Vec<_>>());
-        Self { list, is_joined, bodies, apart, elimination }
+        Self { list, is_joined, has_redundant: false, bodies, apart, elimination }
     }
 
     /// Whether there are none.

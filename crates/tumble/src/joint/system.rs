@@ -72,6 +72,19 @@ impl System {
         elimination.factor(&mut self.matrix);
     }
 
+    /// Sets the softness of rows without a pivot to NaN.
+    pub fn leave_out_dependent(&self, model: &Model, softness: &mut [RowValues]) {
+        let order = &model.joints.elimination.order;
+        for (&joint, pivots) in order.iter().zip(&self.matrix.pivots) {
+            let softness = &mut softness[joint as usize];
+            for (softness, pivot) in softness.iter_mut().zip(pivots.diagonal) {
+                if pivot == 0.0 {
+                    *softness = f64::NAN;
+                }
+            }
+        }
+    }
+
     /// Solves for the impulses, in place.
     pub fn solve(&self, model: &Model, values: &mut [RowValues]) {
         model.joints.elimination.solve(&self.matrix, values);

@@ -309,3 +309,22 @@ fn a_joint_at_the_origin_converges() {
     world.steps(2000).unwrap();
     assert!(world.constraint_error() < 1e-14);
 }
+
+/// Its bodies are not in one plane, so that half way of an iteration its dependent constraints seem independent.
+#[test]
+fn a_slider_crank_out_of_its_plane_converges() {
+    let motor = Motor::Speed { speed: 6.0, effort: 20.0 };
+    let pins = [DVec3::ZERO, DVec3::new(0.3, 0.0, 0.025), DVec3::new(1.1, 0.0, 0.025)];
+    let mut world = world(2e-3)
+        .body(solid("crank", DVec3::X * 0.15, DVec3::new(0.3, 0.06, 0.04)))
+        .body(solid("rod", DVec3::new(0.7, 0.0, 0.05), DVec3::new(0.8, 0.05, 0.04)))
+        .body(solid("piston", DVec3::X * 1.1, DVec3::new(0.16, 0.2, 0.2)))
+        .joint(Joint::hinge(["crank", "world"], pins[0], DVec3::Z).motor(motor))
+        .joint(Joint::hinge(["rod", "crank"], pins[1], DVec3::Z))
+        .joint(Joint::hinge(["rod", "piston"], pins[2], DVec3::Z))
+        .joint(Joint::slider(["piston", "world"], DVec3::X * 1.1, DVec3::X))
+        .build()
+        .unwrap();
+    world.steps(2500).unwrap();
+    assert!(world.constraint_error() < 1e-12, "{:e}", world.constraint_error());
+}
