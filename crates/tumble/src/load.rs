@@ -120,6 +120,9 @@ fn interpolate(rows: &[(f64, DVec3)], time: f64) -> DVec3 {
     }
 }
 
+/// From time (s) and body to force and torque about the centre of mass (N, N·m, world axes).
+type Function = dyn Fn(f64, &BodyView) -> Wrench + Send + Sync;
+
 /// A force that a program computes.
 ///
 /// It is called with the time (s) and the body in the middle of each step, possibly several times for one step, and on any thread. The wrench
@@ -129,7 +132,7 @@ pub struct ForceFunction {
     /// The name of the body.
     pub body: String,
     /// From time and body to force and torque about the centre of mass (N, N·m, world axes).
-    pub function: Arc<dyn Fn(f64, &BodyView) -> Wrench + Send + Sync>,
+    pub function: Arc<Function>,
 }
 
 impl std::fmt::Debug for ForceFunction {

@@ -231,7 +231,7 @@ fn check_forces(joint: &Joint) -> Result<(), Fault> {
         let allowed = "a finite `speed`, or a finite `target` with `stiffness` and `damping` of 0 or more, not both 0";
         return Err(("motor", format!("{motor:?}"), allowed));
     }
-    if !(effort > 0.0) {
+    if effort.is_nan() || effort <= 0.0 {
         return Err(("motor.effort", effort.to_string(), "a number of N·m or N above 0"));
     }
     Ok(())

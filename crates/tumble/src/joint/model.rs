@@ -164,7 +164,7 @@ impl JointModel {
             }),
             contact: self.contact,
             // in the past if it has let go
-            until: (self.until < f64::INFINITY).then(|| self.until - state.time),
+            until: (self.until < f64::INFINITY).then_some(self.until - state.time),
         }
     }
 

@@ -76,7 +76,7 @@ fn a_pendulum_swings_in_the_time_of_the_elliptic_integral_with_an_error_of_secon
             assert!(world.constraint_error() < 1e-14, "{kind:?} {}", world.constraint_error());
             assert!(world.energy().joint_friction.abs() < 1e-12);
             // the tension at the bottom: weight and centripetal force
-            let energy = G * libm::cos(ANGLE) * -1.0;
+            let energy = -G * libm::cos(ANGLE);
             let tension = G + 2.0 * (energy + G) / length;
             let found = world.joint(0).wrench.force.y;
             assert!((found - tension).abs() < 0.02 * tension, "{kind:?} {found} {tension}");
