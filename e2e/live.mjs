@@ -172,6 +172,8 @@ async function drag(page, by, method) {
 }
 
 async function save(page) {
+  // a state in which the mouse has just pressed the body into a wall is refused
+  await waitForRest('the body is at rest again', page);
   const saving = page.waitForEvent('download', { timeout: TIMEOUT });
   await page.click('#save');
   const saved = await saving;
